@@ -156,11 +156,14 @@ public:
         place->update = nullptr;
     }
 
-    void set_parameter(std::string name, std::string value)
+    void set_parameters(std::vector<std::pair<std::string, std::string>> values)
     {
         {
             const std::lock_guard lock(edits_mutex);
-            edits.emplace_back(std::move(name), std::move(value));
+            for (auto& [name, value] : values) {
+                std::erase_if(edits, [&](const auto& known) { return known.first == name; }); // the newest counts
+                edits.emplace_back(std::move(name), std::move(value));
+            }
         }
         thread->wake();
     }
@@ -170,6 +173,7 @@ private:
     bool take_edits()
     {
         const std::lock_guard lock(edits_mutex);
+        if (!edits.empty()) parameters_before = request.parameters;
         for (auto& edit : edits) {
             std::erase_if(request.parameters, [&](const auto& known) { return known.first == edit.first; });
             request.parameters.push_back(std::move(edit));
@@ -223,13 +227,17 @@ private:
         return fitting;
     }
 
-    void make_and_publish(const std::shared_ptr<const CompiledTextures>& compiled)
+    void make_and_publish(const std::shared_ptr<const CompiledTextures>& compiled, bool of_values_alone)
     {
         std::string said = compiled->rendered();
         const TextureRequest fitting = request_for(*compiled->program, said);
         TextureResult result = make_binding(program_of(compiled), reference.texture, fitting);
         said += about_file(reference.file, result.diagnostics);
-        if (!result.binding) return report(said + about_file(reference.file, "note: the old texture stays"));
+        if (!result.binding) {
+            if (of_values_alone) request.parameters = parameters_before; // or the next value would be refused with them
+            return report(said + about_file(reference.file, "note: the old texture stays"));
+        }
+        if (of_values_alone && callbacks.publish_values) return callbacks.publish_values(std::move(*result.binding));
         callbacks.publish(std::move(*result.binding));
         report(std::move(said));
     }
@@ -241,14 +249,23 @@ private:
         if (callbacks.report && !reported.empty()) callbacks.report(reported);
     }
 
+    // What the file is made of now, and was made of when it compiled last: no more, however often its imports change.
+    void watch(const CompiledTextures& compiled)
+    {
+        place->watched = {reference.file};
+        place->watched.insert(compiled.files.begin(), compiled.files.end());
+        if (usable) place->watched.insert(usable->files.begin(), usable->files.end());
+        for (const UsedPicture& picture : pictures_in_hand) place->watched.insert(picture.file);
+    }
+
     void follow()
     {
         const bool edited = take_edits();
         const auto compiled = cache->load(reference.file);
-        place->watched.insert(compiled->files.begin(), compiled->files.end());
+        watch(*compiled);
         if (!compiled->program) {
             in_hand = compiled;
-            if (edited && usable) make_and_publish(usable); // a slider works on while the file is broken
+            if (edited && usable) make_and_publish(usable, true); // a slider works on while the file is broken
             if (!is_forgiven(compiled->has_finding("unreadable-file"))) report(compiled->rendered());
             return;
         }
@@ -259,7 +276,7 @@ private:
         const bool changed = compiled != in_hand || pictures != pictures_in_hand;
         in_hand = usable = compiled;
         pictures_in_hand = std::move(pictures);
-        if (changed || edited) make_and_publish(usable);
+        if (changed || edited) make_and_publish(usable, !changed);
     }
 
     void failed(std::string_view why) noexcept
@@ -293,6 +310,7 @@ private:
 
     std::mutex edits_mutex;
     std::vector<std::pair<std::string, std::string>> edits;
+    std::vector<std::pair<std::string, std::string>> parameters_before; // of the request, the last edits
 
     const std::shared_ptr<CompileThread> thread;
     const std::shared_ptr<CompileThread::Place> place = std::make_shared<CompileThread::Place>();
@@ -307,7 +325,14 @@ LiveTexture::~LiveTexture() = default;
 
 void LiveTexture::set_parameter(std::string name, std::string value)
 {
-    client->set_parameter(std::move(name), std::move(value));
+    std::vector<std::pair<std::string, std::string>> one;
+    one.emplace_back(std::move(name), std::move(value));
+    client->set_parameters(std::move(one));
+}
+
+void LiveTexture::set_parameters(std::vector<std::pair<std::string, std::string>> values)
+{
+    client->set_parameters(std::move(values));
 }
 
 } // namespace haptel::jit

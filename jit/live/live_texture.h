@@ -12,6 +12,8 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace haptel::jit {
 
@@ -24,6 +26,9 @@ struct LiveCallbacks {
     // but not destroy their own.
     std::function<void(TextureBinding)> publish;
     std::function<void(std::string_view diagnostics)> report; // rendered text; may be empty: nobody listens
+    // The same as publish where values alone are new, of the program and the pictures that are felt; what there is to
+    // warn of is not reported then. May be empty: publish.
+    std::function<void(TextureBinding)> publish_values = {};
 };
 
 class LiveTexture {
@@ -38,6 +43,8 @@ public:
     // A slider moved: publishes a binding with this value as soon as the compile thread is free, or reports why not.
     // Nothing is compiled. Any thread; never waits for the compiler.
     void set_parameter(std::string name, std::string value);
+    // Several at once: no binding has a part of them.
+    void set_parameters(std::vector<std::pair<std::string, std::string>> values);
 
 private:
     class Client;

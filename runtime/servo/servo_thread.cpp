@@ -166,6 +166,7 @@ void ServoThread::keep_deadlines()
         const int64_t missed = late_ns < 0 ? 0 : late_ns / period_ns + 1;
         overload_.tick(static_cast<uint64_t>(missed));
         report_.missed_deadlines += static_cast<uint64_t>(missed);
+        missed_deadlines_.store(report_.missed_deadlines, std::memory_order_relaxed);
         periods_ += static_cast<uint64_t>(missed);
         periods_since_pose_ += static_cast<uint64_t>(missed);
         deadline_ns += missed * period_ns;
@@ -193,13 +194,18 @@ bool ServoThread::tick()
     }
     if (pose.link_ns > 0) report_.link_ns.add(static_cast<uint64_t>(pose.link_ns));
     if (pose.periods == 0) pose.periods = periods_since_pose_;
-    pose.interrupted = pose.interrupted || interrupted_;
+    const bool is_withheld = withheld_.load(std::memory_order_relaxed);
+    pose.interrupted = pose.interrupted || interrupted_ || is_withheld;
     pose.degradation = std::max(pose.degradation, overload_.step());
     periods_since_pose_ = 0;
     interrupted_ = false;
 
     const int64_t start_ns = monotonic_ns();
-    const TickResult result = renderer_->tick(pose);
+    TickResult result = renderer_->tick(pose);
+    if (is_withheld) { // also of a scene in which forces do not rise
+        result.force_n = result.torque_n_m = glm::dvec3(0);
+        result.grip_force_n = 0;
+    }
     const int64_t compute_ns = monotonic_ns() - start_ns;
 
     device_->write_grip(result.grip_force_n);

@@ -55,6 +55,13 @@ public:
     const ServoReport& wait();
     bool running() const noexcept { return running_.load(std::memory_order_acquire); }
 
+    // Any thread: no force from the next tick on, while the servo goes on to follow the hand; and, taken back, forces
+    // that rise from 0 as after an interruption. Those ticks are recorded as interrupted.
+    void withhold_force(bool is_withheld) noexcept { withheld_.store(is_withheld, std::memory_order_relaxed); }
+    bool is_force_withheld() const noexcept { return withheld_.load(std::memory_order_relaxed); }
+    // So far. Any thread.
+    uint64_t missed_deadlines() const noexcept { return missed_deadlines_.load(std::memory_order_relaxed); }
+
     // Any thread but the servo: another scene in the place of the one that is felt, from the next tick on
     // (Renderer::take_over). Returns why it is refused, or nothing.
     std::string publish(std::shared_ptr<const Scene> scene);
@@ -91,6 +98,8 @@ private:
     ServoReport report_;
     std::atomic<bool> stop_requested_{false};
     std::atomic<bool> running_{false};
+    std::atomic<bool> withheld_{false};
+    std::atomic<uint64_t> missed_deadlines_{0};
     std::thread thread_;
 
     // Of the servo thread only.

@@ -25,8 +25,8 @@ void count(const char* what, uint64_t how_many = 1);
 // A finding: says so and ends the process, so that the input can be kept.
 [[noreturn]] void fail(const std::string& what);
 
-// text_targets.cpp, falcon_target.cpp, hid_target.cpp, inverse3_target.cpp, picture_target.cpp, mesh_target.cpp,
-// recording_target.cpp, library_target.cpp, program_targets.cpp
+// text_targets.cpp, falcon_target.cpp, hid_target.cpp, inverse3_target.cpp, osc_target.cpp, picture_target.cpp,
+// mesh_target.cpp, recording_target.cpp, library_target.cpp, program_targets.cpp
 void parse_text(std::string_view bytes);
 void compile_text(std::string_view bytes);
 void format_text(std::string_view bytes);
@@ -34,6 +34,7 @@ void read_ir(std::string_view bytes);
 void hear_falcon(std::string_view bytes);
 void read_hid(std::string_view bytes);
 void hear_inverse3(std::string_view bytes);
+void hear_osc(std::string_view bytes);
 void read_picture(std::string_view bytes);
 void read_mesh(std::string_view bytes);
 void read_recording(std::string_view bytes);
@@ -45,6 +46,7 @@ std::vector<std::string> ir_corpus();
 std::vector<std::string> falcon_corpus();
 std::vector<std::string> hid_corpus();
 std::vector<std::string> inverse3_corpus();
+std::vector<std::string> osc_corpus();
 std::vector<std::string> picture_corpus();
 std::vector<std::string> mesh_corpus();
 std::vector<std::string> recording_corpus();

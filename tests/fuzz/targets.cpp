@@ -19,6 +19,7 @@ constexpr Target all[] = {
     {"falcon", "what a Falcon sends, and its program's file", false, falcon_corpus, hear_falcon},
     {"hid", "what a HID device says of its reports", false, hid_corpus, read_hid},
     {"inverse3", "what the service of the Inverse3 says", false, inverse3_corpus, hear_inverse3},
+    {"osc", "messages of other programs that control an exploration", false, osc_corpus, hear_osc},
     {"recording", "readers of recorded runs on bytes, and what they read written again", false, recording_corpus,
      read_recording},
     {"library", "archives of texture libraries, their manifests and locks", false, library_corpus, read_library},

@@ -17,7 +17,7 @@ houses=(
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'api: . | include/haptel input/toml runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
     'api/compiler: . | include/haptel api jit lang/abi'
-    'tools: output arguments plot sound report library commands . | input libraries lang stdlib jit runtime device bench'
+    'tools: output arguments plot sound report library control commands . | input libraries lang stdlib jit runtime device bench'
     'tests/api: . | tests/support'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
     'tests/runtime: . | tests/support input/toml runtime lang/abi'
@@ -31,7 +31,7 @@ declare -A home=(
     [haptel/]='include/haptel api examples/library tests/api'
     [Eigen/]='jit/fit' [unsupported/Eigen/]='jit/fit'
     [zip.h]='libraries/package' [sha2.h]='libraries'
-    [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device'
+    [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device' [lo/]='tools/control'
 )
 
 declare -A floor outside # by room: its place in its house; by house: what else it may use

@@ -6,6 +6,7 @@
 #include "runtime/servo/allocation_count.h"
 #include "tools/arguments/quantity.h"
 #include "tools/commands/command.h"
+#include "tools/commands/explore_control.h"
 #include "tools/commands/explore_hands.h"
 #include "tools/commands/explore_scene.h"
 #include "tools/commands/explore_textures.h"
@@ -15,6 +16,7 @@
 #include "tools/report/explore_status.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -28,6 +30,9 @@
 namespace haptel::tools {
 
 namespace {
+
+// What is recorded goes to the file from the loop that pauses so, every few milliseconds.
+constexpr std::chrono::milliseconds pause{2};
 
 std::optional<runtime::LoadedScene> load(const ExploreOptions& options, ExploreTextures& textures,
                                          runtime::SurfaceCache& surfaces)
@@ -122,13 +127,28 @@ ExitCode explore(const ExploreOptions& options)
     ExploreStatus status(stderr_is_terminal());
     std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), std::move(loaded.probes),
                                       surfaces, textures, hands);
+    std::optional<ExploreControl> control; // until the hands have told how it ended
+    if (options.osc_port) {
+        control.emplace(*options.osc_port, hands, textures, *scene);
+        if (!control->error().empty()) {
+            say_error(control->error());
+            return ExitCode::findings;
+        }
+        status.say(control->greeting());
+    }
     hands.start();
     while (hands.running()) {
         if (interrupted() || hands.is_recording_lost()) hands.request_stop();
         if (const std::string messages = scene->take_messages() + textures.take_messages() + hands.take_messages();
-            !messages.empty())
+            !messages.empty()) {
             status.say(messages);
-        if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            if (control) control->tell(messages);
+        }
+        const bool is_quiet = !hands.drain(status);
+        if (control)
+            control->serve(is_quiet ? pause : std::chrono::milliseconds(0));
+        else if (is_quiet)
+            std::this_thread::sleep_for(pause);
     }
     const std::string last_messages = scene->take_messages();
     scene.reset();
@@ -137,6 +157,8 @@ ExitCode explore(const ExploreOptions& options)
     outcome.scene = std::filesystem::path(options.scene).filename().string();
     outcome.clock = options.clock;
     outcome.hands = hands.wait(status);
+    if (control) control->end(outcome.hands.front().servo.stop_reason);
+    control.reset();
     status.say(textures.take_messages());
     outcome.textures_compiled = textures.compiled();
 
@@ -168,6 +190,20 @@ void add_exploring(CLI::App& command, ExploreOptions& options)
     command.add_option("--core", options.core, "Processor for the servo alone to stay on, from 0")
         ->type_name("N")
         ->check(CLI::NonNegativeNumber);
+    command
+        .add_option_function<std::string>(
+            "--osc",
+            [&port = options.osc_port](const std::string& text) {
+                uint16_t number = 0;
+                const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
+                if (failed != std::errc() || end != text.data() + text.size())
+                    throw CLI::ValidationError(
+                        fmt::format("expected a port from 1 to 65535, or 0 for any free one, found '{}'", text));
+                port = number;
+            },
+            "Port of 127.0.0.1 and ::1 for Open Sound Control: other programs of this machine set parameters "
+            "while it runs (docs/control.md); 0: any free one")
+        ->type_name("PORT");
     command.add_flag("--json", options.json, "Report as JSON on standard output");
 }
 

@@ -3,6 +3,7 @@
 
 #include "tools/commands/command.h"
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -16,7 +17,8 @@ struct ExploreOptions {
     std::string recording;            // file; empty: none
     std::vector<std::string> devices; // in place of the scene's, from the first on
     std::string clock = "wall";
-    std::optional<unsigned> core; // that the servo stays on
+    std::optional<unsigned> core;     // that the servo stays on
+    std::optional<uint16_t> osc_port; // where it is controlled; empty: nowhere
     double seconds = std::numeric_limits<double>::infinity();
     bool json = false;
 };

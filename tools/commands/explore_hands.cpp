@@ -4,6 +4,7 @@
 #include "tools/arguments/feel_files.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <utility>
 
@@ -18,7 +19,7 @@ constexpr double relief_exaggeration = 4;
 
 ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vector<runtime::LoadedHand> hands,
                            const runtime::ServoOptions& options, ExploreKept kept)
-    : scene_(std::move(scene)), folder_(kept.folder), newest_(hands.size())
+    : scene_(std::move(scene)), folder_(kept.folder), recording_(kept.recording), newest_(hands.size())
 {
     std::vector<runtime::ServoThread*> servos;
     for (std::size_t i = 0; i < hands.size(); ++i) {
@@ -30,7 +31,8 @@ ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vec
         if (!kept.recording.empty()) {
             kept.origin.device = hand.device;
             kept.origin.hand = static_cast<uint32_t>(i + 1);
-            hand.recording = std::make_unique<runtime::TraceLog>(recording_of_hand(kept.recording, i), kept.origin);
+            hand.origin = kept.origin;
+            hand.recording = std::make_unique<runtime::TraceLog>(take_file(i), hand.origin);
         }
         hand.servo = std::make_unique<runtime::ServoThread>(scene_, std::move(hands[i].device), own);
         servos.push_back(hand.servo.get());
@@ -53,6 +55,64 @@ bool ExploreHands::running() const
 void ExploreHands::request_stop()
 {
     for (Hand& hand : hands_) hand.servo->request_stop();
+}
+
+void ExploreHands::withhold_force(bool is_withheld)
+{
+    for (Hand& hand : hands_) hand.servo->withhold_force(is_withheld);
+}
+
+bool ExploreHands::is_force_withheld() const
+{
+    return hands_.front().servo->is_force_withheld();
+}
+
+std::vector<ControlledHand> ExploreHands::felt() const
+{
+    std::vector<ControlledHand> felt;
+    for (std::size_t i = 0; i < hands_.size(); ++i)
+        felt.push_back({newest_[i].tip_m, newest_[i].force_n, newest_[i].contact, newest_[i].object, newest_[i].faults,
+                        hands_[i].servo->missed_deadlines()});
+    return felt;
+}
+
+// run.haptrace, run_take_2.haptrace, of the second hand run_take_2_2.haptrace.
+std::string ExploreHands::take_file(std::size_t hand) const
+{
+    if (takes_ == 1) return recording_of_hand(recording_, hand);
+    const std::filesystem::path first = recording_;
+    return recording_of_hand(
+        (first.parent_path() / fmt::format("{}_take_{}{}", first.stem().string(), takes_, first.extension().string()))
+            .string(),
+        hand);
+}
+
+ControlAnswer ExploreHands::start_recording()
+{
+    if (recording_.empty()) return {"there is no file to record to: start with --record FILE.haptrace", {}};
+    if (hands_.front().recording) return {"a recording is under way: stop it first", {}};
+    ++takes_;
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+        hands_[i].recording = std::make_unique<runtime::TraceLog>(take_file(i), hands_[i].origin);
+        if (hands_[i].recording->error().empty()) continue;
+        std::string why = hands_[i].recording->error();
+        for (Hand& hand : hands_) hand.recording.reset();
+        return {std::move(why), {}};
+    }
+    return {{}, take_file(0)};
+}
+
+ControlAnswer ExploreHands::stop_recording()
+{
+    if (!hands_.front().recording) return {"nothing is recorded", {}};
+    std::string error;
+    for (Hand& hand : hands_) {
+        hand.recording->hand_over();
+        error += hand.recording->error();
+        hand.recording.reset();
+    }
+    if (!error.empty()) return {std::move(error), {}};
+    return {{}, take_file(0)};
 }
 
 std::string ExploreHands::publish(const std::shared_ptr<const runtime::Scene>& scene)

@@ -5,6 +5,7 @@
 #include "runtime/servo/servo_thread.h"
 #include "runtime/servo/servo_turns.h"
 #include "runtime/servo/trace_log.h"
+#include "tools/control/controlled.h"
 #include "tools/plot/plot_run.h"
 #include "tools/report/explore_files.h"
 #include "tools/report/explore_report.h"
@@ -35,6 +36,17 @@ public:
     void start();
     bool running() const;
     void request_stop();
+    // No force, while all goes on; and back again.
+    void withhold_force(bool is_withheld);
+    bool is_force_withheld() const;
+    // As of the last drain.
+    std::vector<ControlledHand> felt() const;
+
+    // Of all hands: a recording ends, or another begins in a file that its number is in the name of. Returns why not,
+    // or nothing and the first file.
+    ControlAnswer start_recording();
+    ControlAnswer stop_recording();
+
     // Another scene for all of them, from their next tick on. Returns why it is refused, or nothing.
     std::string publish(const std::shared_ptr<const runtime::Scene>& scene);
     // Frees the scenes that they have left.
@@ -63,11 +75,15 @@ private:
         UnfeltContact unfelt;
         std::unique_ptr<runtime::ServoThread> servo;
         std::optional<ExploreFiles> files;
+        runtime::TraceOrigin origin; // of its recordings
         std::unique_ptr<runtime::TraceLog> recording;
     };
 
+    std::string take_file(std::size_t hand) const; // of the recording that is written now
+
     std::shared_ptr<const runtime::Scene> scene_;
-    std::string folder_;
+    std::string folder_, recording_;
+    std::size_t takes_ = 1; // recordings that were begun, of each hand
     std::vector<Hand> hands_;
     std::vector<runtime::TickRecord> newest_;  // of each hand
     std::optional<runtime::ServoTurns> turns_; // of all servos; virtual clock only

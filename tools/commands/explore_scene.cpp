@@ -2,12 +2,14 @@
 
 #include "input/regular_file.h"
 #include "jit/live/file_watch.h"
+#include "lang/text/source.h"
 
 #include <algorithm>
 #include <chrono>
 #include <poll.h>
 #include <set>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 namespace haptel::tools {
@@ -35,7 +37,8 @@ std::string content_of(const std::filesystem::path& file)
 ExploreScene::ExploreScene(std::filesystem::path file, std::vector<std::filesystem::path> meshes,
                            std::vector<runtime::ProbeSettings> probes, runtime::SurfaceCache& surfaces,
                            ExploreTextures& textures, ExploreHands& hands)
-    : file_(std::move(file))
+    : folder_(file.parent_path())
+    , file_(std::move(file))
     , meshes_(std::move(meshes))
     , probes_(std::move(probes))
     , written_(probes_)
@@ -57,6 +60,29 @@ std::string ExploreScene::take_messages()
 {
     const std::lock_guard lock(messages_mutex_);
     return std::exchange(messages_, {});
+}
+
+std::string ExploreScene::follow(const std::string& name)
+{
+    const std::filesystem::path plain = name;
+    if (name.empty() || name.find('\0') != name.npos || plain.filename() != plain || plain.extension() != ".toml")
+        return "expected the name of a scene file, without a folder: \"other.toml\" beside the first scene";
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(folder_ / plain, unknown))
+        return "there is no file " + lang::printable(name) + " in the folder of the first scene";
+    const std::lock_guard lock(messages_mutex_);
+    asked_ = folder_ / plain;
+    return {};
+}
+
+void ExploreScene::follow_asked()
+{
+    std::unique_lock lock(messages_mutex_);
+    std::filesystem::path asked = std::exchange(asked_, {});
+    lock.unlock();
+    if (asked.empty() || asked == file_) return;
+    const auto before = std::tuple(std::exchange(file_, std::move(asked)), meshes_, std::exchange(loaded_state_, {}));
+    if (!load()) std::tie(file_, meshes_, loaded_state_) = before;
 }
 
 void ExploreScene::say(const std::string& message)
@@ -84,6 +110,7 @@ void ExploreScene::watch()
         files.watch(names);
         pollfd descriptor{files.descriptor(), POLLIN, 0};
         poll(&descriptor, 1, static_cast<int>(look_interval.count()));
+        follow_asked();
         const auto now = Clock::now();
         if (const auto change = files.take(); change != jit::FileWatch::Change::none)
             due = now + (change == jit::FileWatch::Change::written ? settle_after_written : settle_after_writing);
@@ -127,10 +154,10 @@ std::string ExploreScene::told_of_probes(std::vector<runtime::ProbeSettings> now
     return edited ? file_.filename().string() + ": another probe is felt after a restart\n" : "";
 }
 
-void ExploreScene::load()
+bool ExploreScene::load()
 {
     std::string now = state();
-    if (now == loaded_state_) return;
+    if (now == loaded_state_) return true;
     loaded_state_ = std::move(now);
     runtime::LoadedScene loaded = runtime::load_scene(file_, textures_.resolver(), {}, &surfaces_, {{}, &stop_, 1});
     if (!loaded.meshes.empty()) {
@@ -139,12 +166,18 @@ void ExploreScene::load()
     }
     say(loaded.diagnostics);
     const std::string name = file_.filename().string();
-    if (!loaded.scene) return say(name + ": not used; what was felt stays\n");
-    if (const std::string refused = hands_.publish(loaded.scene); !refused.empty())
-        return say(name + ": not used: " + refused + "\n");
+    if (!loaded.scene) {
+        say(name + ": not used; what was felt stays\n");
+        return false;
+    }
+    if (const std::string refused = hands_.publish(loaded.scene); !refused.empty()) {
+        say(name + ": not used: " + refused + "\n");
+        return false;
+    }
     textures_.watch(*loaded.scene);
     say(name + ": reloaded; devices, probes and workspaces stay as they were at the start\n" +
         told_of_probes(std::move(loaded.probes)));
+    return true;
 }
 
 } // namespace haptel::tools

@@ -109,6 +109,33 @@ std::string to_text(const lang::SourceSet& sources, const std::string& head,
     return text;
 }
 
+// The name of the texture that one is written as a preset of; empty: it is none.
+std::string_view preset_of(const lang::ast::File& tree, std::string_view name)
+{
+    const auto written =
+        std::ranges::find_if(tree.presets, [&](const lang::ast::Preset& preset) { return preset.name.text == name; });
+    return written == tree.presets.end() ? std::string_view() : std::string_view(written->of.text);
+}
+
+// Those of this file, of the texture or of another preset of it, in their order.
+std::vector<std::string> presets_of(const lang::ast::File& tree, std::string_view name)
+{
+    std::vector<std::string> presets;
+    for (const lang::ast::Preset& preset : tree.presets) {
+        std::string_view of = preset.of.text;
+        for (size_t left = tree.presets.size(); left > 0 && of != name && !of.empty(); --left) of = preset_of(tree, of);
+        if (of == name) presets.push_back(preset.name.text);
+    }
+    return presets;
+}
+
+// From which any program can draw a panel (docs/control.md): fields may be added, and none taken away or changed
+// without another version.
+Json manifest(Json textures)
+{
+    return {{"schema", "haptel-textures"}, {"version", 1}, {"textures", std::move(textures)}};
+}
+
 ExitCode show_file(const InfoOptions& options)
 {
     const jit::TextureReference named = jit::split_reference(options.what);
@@ -135,7 +162,10 @@ ExitCode show_file(const InfoOptions& options)
     for (const ir::Texture& texture : result.program->module.textures) {
         names.push_back(texture.name);
         if (!wanted.empty() && texture.name != wanted) continue;
+        const std::string_view of = preset_of(tree, texture.name);
         all.push_back(texture_json(path, texture));
+        all.back()["preset_of"] = of.empty() ? Json(nullptr) : Json(of);
+        all.back()["presets"] = presets_of(tree, texture.name);
         const auto add = [&](const std::string& head, std::span<const lang::ast::TextureParameter> parameters) {
             text += (text.empty() ? "" : "\n") + to_text(result.sources, head, parameters, texture);
         };
@@ -151,7 +181,7 @@ ExitCode show_file(const InfoOptions& options)
         return ExitCode::findings;
     }
     if (options.json)
-        print_json({{"textures", std::move(all)}});
+        print_json(manifest(std::move(all)));
     else
         fmt::print("{}", text);
     return ExitCode::fine;

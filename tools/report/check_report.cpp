@@ -30,7 +30,7 @@ const char* name_of(ir::Type type)
 
 Json number_of(const ir::Parameter& parameter, double value)
 {
-    if (!std::isfinite(value)) return nullptr; // no range
+    if (!std::isfinite(value) || parameter.type == ir::Type::image) return nullptr; // no range; no number
     if (parameter.type == ir::Type::boolean) return value != 0;
     if (parameter.type == ir::Type::real) return value;
     return static_cast<int64_t>(value);

@@ -299,6 +299,21 @@ TEST_CASE("a vector is set as a whole and by its components, a choice by its nam
     CHECK(follower.says("stack of 'bond' is set aside: expected running or english"));
 }
 
+TEST_CASE("a value that is refused does not keep the next one from being felt; several at once are one binding")
+{
+    const test::Folder folder;
+    folder.write("t.haptel", "texture t(int n = 1 in 1 .. 20000, float depth = 1um, float more = 0um) { float h = 0.0; "
+                             "for (int i = 0; i < n; ++i) h += sin(p.x / 1mm + float(i)); return depth + more + 0.0 * "
+                             "clamp(h, -1.0, 1.0) * 1um; }");
+    Follower follower(folder, {}, 1e-4); // a call may take 20 us
+    follower.texture->set_parameter("n", "20000");
+    CHECK(follower.says("per call (median), more than the 20 us"));
+    CHECK(follower.publications() == 0);
+    follower.texture->set_parameters({{"depth", "5um"}, {"more", "2um"}});
+    CHECK(follower.comes_to(7));
+    CHECK(follower.publications() == 1);
+}
+
 TEST_CASE("an exception in a client is told, and the compile thread goes on with it and the others")
 {
     const test::Folder folder, other_folder;

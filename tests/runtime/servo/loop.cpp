@@ -107,6 +107,44 @@ TEST_CASE("a run on the virtual clock reports what was felt")
     CHECK(seen->stopped);
 }
 
+TEST_CASE("a force that is withheld is 0 while the hand is followed, and rises from 0 when it is given back")
+{
+    for (const double rise_s : {0.1, 0.0}) {
+        CAPTURE(rise_s);
+        Scene scene = textured_plane();
+        scene.servo.force_rise_s = rise_s;
+        ServoThread* running = nullptr;
+        const auto press = [&](uint64_t tick, DevicePose& pose) {
+            if (tick == 500) running->withhold_force(true);
+            if (tick == 700) running->withhold_force(false);
+            pose = at(0.001, 0.002, -1e-3 * std::min(1.0, static_cast<double>(tick) / 100));
+            return DeviceStatus::ok;
+        };
+        ServoThread servo(shared(std::move(scene)), std::make_unique<ScriptedDevice>(press), as_fast_as_possible(1));
+        running = &servo;
+        servo.start();
+        const ServoReport report = servo.wait();
+        CHECK(report.allocations_in_tick == uint64_t{0});
+        TickRecord record;
+        double full_n = 0;
+        while (servo.telemetry().pop(record)) {
+            const double force_n = glm::length(record.force_n);
+            if (record.tick > 200) CHECK(record.contact == 1);
+            if (record.tick == 499) full_n = force_n;
+            if (record.tick >= 500 && record.tick < 700) {
+                CHECK(force_n == 0);
+                CHECK(record.interrupted == 1);
+            }
+            if (record.tick < 700 || rise_s == 0) continue;
+            CHECK(record.interrupted == 0);
+            CHECK(force_n <= full_n * std::min(1.0, static_cast<double>(record.tick - 699) / 100) + 1e-12);
+        }
+        REQUIRE(full_n > 0.5);
+        CHECK(std::abs(glm::length(record.force_n) - full_n) < 1e-9);
+        CHECK(servo.missed_deadlines() == 0);
+    }
+}
+
 TEST_CASE("twin runs are equal bit for bit")
 {
     std::vector<TickRecord> a, b;

@@ -130,6 +130,53 @@ TEST_CASE("info: the textures of a file, values as written and as numbers")
                    "b.haptel:1:"));
 }
 
+TEST_CASE("info --json: the manifest of a file, version 1, is what docs/control.md promises, field by field")
+{
+    const Folder folder;
+    const std::string file = folder.write(
+        "a.haptel", "/// Grooves.\ntexture grooves(\n    /// Apart.\n    float pitch = 2mm in 1mm .. 5mm,\n"
+                    "    int octaves = 4 in 1 .. 8, uint seed = 3u in 0 .. 9,\n    bool worn = true,\n"
+                    "    int kind = soft in {soft, sharp},\n    vec2 size = vec2(1cm, 2cm),\n"
+                    "    image relief, out float friction_scale)\n"
+                    "{\n    friction_scale = worn ? 2.0 : 1.0;\n    float h = kind == sharp ? size.x : size.y;\n"
+                    "    return 0.01 * h * fbm(p / pitch, octaves + int(seed)) + 1um * sample(relief, uv);\n}\n"
+                    "/// Fine.\ntexture fine = grooves(pitch = 1mm);\ntexture finest = fine(octaves = 8);\n");
+    const Ran ran = run_command("info '" + file + ":grooves' --json");
+    REQUIRE(ran.code == 0);
+    Json written = Json::parse(R"({
+        "schema": "haptel-textures", "version": 1,
+        "textures": [{
+            "file": "FILE", "name": "grooves", "doc": "Grooves.",
+            "parameters": [
+                {"name": "pitch", "type": "float", "default": 0.002, "minimum": 0.001, "maximum": 0.005,
+                 "choices": [], "unit": "m", "doc": "Apart."},
+                {"name": "octaves", "type": "int", "default": 4, "minimum": 1, "maximum": 8,
+                 "choices": [], "unit": "", "doc": ""},
+                {"name": "seed", "type": "uint", "default": 3, "minimum": 0, "maximum": 9,
+                 "choices": [], "unit": "", "doc": ""},
+                {"name": "worn", "type": "bool", "default": true, "minimum": null, "maximum": null,
+                 "choices": [], "unit": "", "doc": ""},
+                {"name": "kind", "type": "int", "default": 0, "minimum": 0, "maximum": 1,
+                 "choices": ["soft", "sharp"], "unit": "", "doc": ""},
+                {"name": "size.x", "type": "float", "default": 0.01, "minimum": null, "maximum": null,
+                 "choices": [], "unit": "m", "doc": ""},
+                {"name": "size.y", "type": "float", "default": 0.02, "minimum": null, "maximum": null,
+                 "choices": [], "unit": "m", "doc": ""},
+                {"name": "relief", "type": "image", "default": null, "minimum": null, "maximum": null,
+                 "choices": [], "unit": "", "doc": ""}],
+            "inputs": ["p", "uv", "footprint"], "outputs": ["friction_scale"],
+            "preset_of": null, "presets": ["fine", "finest"]}]})");
+    written["textures"][0]["file"] = file;
+    CHECK(Json::parse(ran.out).dump(1) == written.dump(1));
+    const Json presets = Json::parse(run_command("info '" + file + "' --json").out)["textures"];
+    REQUIRE(presets.size() == 3);
+    CHECK(presets[1]["preset_of"] == "grooves");
+    CHECK(presets[1]["presets"] == Json::array({"finest"}));
+    CHECK(presets[1]["parameters"][0]["default"] == 0.001);
+    CHECK(presets[2]["preset_of"] == "fine");
+    CHECK(presets[2]["presets"].empty());
+}
+
 TEST_CASE("info: a doc comment is shown whole, with ranges, dots and further lines")
 {
     const Folder folder;
