@@ -5,6 +5,7 @@
 #include "stdlib/stdlib.h"
 
 #include <atomic>
+#include <filesystem>
 #include <future>
 
 namespace haptel::jit {
@@ -112,7 +113,9 @@ void CompiledProgram::optimise() const
 
 const haptel_texture* CompiledProgram::find(std::string_view name) const
 {
-    if (name.empty()) return table.size() == 1 ? table.data() : nullptr;
+    if (name.empty() && table.size() == 1) return table.data();
+    const std::string of_file = name.empty() ? std::filesystem::path(sources().file(0).name).stem().string() : "";
+    if (name.empty()) name = of_file;
     const auto found = std::ranges::find(table, name, &haptel_texture::name);
     return found == table.end() ? nullptr : &*found;
 }

@@ -31,7 +31,8 @@ public:
     // In the order of the source. Their facts hold over the parameters' ranges and any point; where they were not asked
     // for, all but operations_max say that nothing is known.
     std::span<const haptel_texture> textures() const { return table; }
-    // Null if there is none of that name; an empty one finds the only texture.
+    // Null if there is none of that name; an empty one finds the only texture, or among several the one that is called
+    // like the file.
     const haptel_texture* find(std::string_view name) const;
 
     // What the texture was compiled from, for evaluators other than code.

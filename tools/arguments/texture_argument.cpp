@@ -1,5 +1,6 @@
 #include "tools/arguments/texture_argument.h"
 
+#include "lang/abi/library_name.h"
 #include "libraries/find.h"
 
 #include <fmt/format.h>
@@ -9,6 +10,8 @@ namespace haptel::tools {
 Parsed<TextureArgument> parse_texture_argument(std::string_view text)
 {
     const auto colon = text.rfind(':');
+    if (colon == text.npos && names_library_file(text)) // the texture that is called like its file
+        return {{libraries::path_named(text), std::string(text.substr(text.rfind('.') + 1))}, {}};
     if (colon == text.npos || colon == 0 || colon + 1 == text.size())
         return {{}, fmt::format("expected FILE:NAME, such as rock.haptel:rock, found '{}'", text)};
     return {{libraries::path_named(text.substr(0, colon)), std::string(text.substr(colon + 1))}, {}};

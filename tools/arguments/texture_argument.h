@@ -16,7 +16,8 @@ struct TextureArgument {
     std::string file, name;
 };
 
-// At the last colon; both sides must be there. The file of an installed library, "wood.oak", becomes its path.
+// At the last colon; both sides must be there, but for the file of an installed library, "wood.oak", which becomes its
+// path and is enough for the texture `oak`.
 Parsed<TextureArgument> parse_texture_argument(std::string_view text);
 
 // What TextureRequest::parameters wants: text stays text.

@@ -64,6 +64,21 @@ TEST_CASE("a texture's parameters, inputs and entries stand in the C interface")
     CHECK(program->find("groves") == nullptr);
 }
 
+TEST_CASE("a texture without a name is the only one, or the one that is called like its file")
+{
+    jit::TextureOptions options;
+    options.name = "some/where/oak.haptel";
+    const auto found = [&](const char* text) -> std::string {
+        const jit::CompiledTextures made = jit::compile_texture(text, options);
+        REQUIRE(made.program);
+        const haptel_texture* texture = made.program->find("");
+        return texture ? texture->name : "none";
+    };
+    CHECK(found("texture rings() { return 1mm; }") == "rings");
+    CHECK(found("texture rings() { return 1mm; } texture oak() { return 2mm; } texture old = oak();") == "oak");
+    CHECK(found("texture rings() { return 1mm; } texture bark() { return 2mm; }") == "none");
+}
+
 TEST_CASE("height and gradient are the closed form's, and parameters come from the block")
 {
     const auto program = compiled(grooves);

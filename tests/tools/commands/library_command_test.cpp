@@ -220,6 +220,7 @@ TEST_CASE("a project has libraries of its own, and a lock that holds it to them"
     CHECK(height() == "height_m 0.001");
     CHECK(height_of(root.run("eval wood.oak:board --at 0,0,0")) == "height_m 0.002");
     CHECK(height_of(root.run("eval wood.oak:board --at 0,0,0", "project")) == "height_m 0.001");
+    CHECK(contains(root.run("eval wood.oak --at 0,0,0").err, "no texture 'oak'")); // it has `board` alone
     CHECK(root.json("list", "project/textures")["libraries"].size() == 2);
 
     const Ran away = root.run("remove wood@1.0.0 --project", "project/textures"); // from within
