@@ -1,5 +1,6 @@
 #include "device/evdev/evdev_axes.h"
 
+#include "device/guard/force_guard.h"
 #include "runtime/servo/real_time.h"
 
 #include <algorithm>
@@ -42,14 +43,19 @@ private:
 
     int keep_levels(WakeEvent& wake, AxisClient& client, int count)
     {
+        ForceGuard guard(port_->file_descriptor(), 0, port_->last_word());
         int64_t update_ns = runtime::monotonic_ns(), replay_ns = update_ns;
         std::vector<AxisEvent> events;
         while (client.wants_more()) {
             const int64_t left_ns = update_ns - runtime::monotonic_ns();
             events.clear();
-            if (const int error = port_->read(
-                    events, static_cast<int>(std::clamp<int64_t>((left_ns + ns_per_ms - 1) / ns_per_ms, 0, 100))))
+            if (const int error = port_->read(events, static_cast<int>(std::clamp<int64_t>(
+                                                          (left_ns + ns_per_ms - 1) / ns_per_ms, 0, guard_hears_ms))))
                 return error;
+            if (guard.hear()) {
+                client.was_silenced();
+                replay_ns -= ns_per_ms * times_.replay_ms; // the effects may have been ended
+            }
             for (const AxisEvent& event : events) client.moved(event.axis, event.value);
             const int64_t now_ns = runtime::monotonic_ns();
             if (now_ns < update_ns) continue;

@@ -113,13 +113,31 @@ public:
         return 0;
     }
 
+    int file_descriptor() const override { return file_; }
+    std::vector<uint8_t> last_word() const override
+    {
+        std::vector<uint8_t> word;
+        for (const int16_t id : ids_) {
+            if (id < 0) continue;
+            const input_event event = event_of(static_cast<uint16_t>(id), 0);
+            const auto* bytes = reinterpret_cast<const uint8_t*>(&event);
+            word.insert(word.end(), bytes, bytes + sizeof event);
+        }
+        return word;
+    }
+
 private:
-    int write_event(uint16_t code, int value)
+    static input_event event_of(uint16_t code, int value)
     {
         input_event event = {};
         event.type = EV_FF;
         event.code = code;
         event.value = value;
+        return event;
+    }
+    int write_event(uint16_t code, int value)
+    {
+        const input_event event = event_of(code, value);
         return ::write(file_, &event, sizeof(event)) == static_cast<ssize_t>(sizeof(event)) ? 0 : errno;
     }
 

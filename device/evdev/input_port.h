@@ -29,6 +29,9 @@ public:
     virtual int set_level(int axis, double level) = 0;
     virtual int play(int axis) = 0; // makes the level felt; again before it is over
     virtual int prepare() = 0;      // full gain, no spring of its own
+    // What a guard needs: the open file, and the bytes that end the effects made so far. -1: there is no file.
+    virtual int file_descriptor() const { return -1; }
+    virtual std::vector<uint8_t> last_word() const { return {}; }
     // Until something is to be read or the time limit.
     virtual int read(std::vector<AxisEvent>& events, int timeout_ms) = 0;
 };

@@ -91,7 +91,8 @@ bool receive(int socket, Told& told, int& device) noexcept
 void say(Told word, int device) noexcept
 {
     if (word.endpoint == 0) {
-        (void)!send(device, word.bytes.data(), word.size, MSG_DONTWAIT | MSG_NOSIGNAL);
+        const ssize_t sent = send(device, word.bytes.data(), word.size, MSG_DONTWAIT | MSG_NOSIGNAL);
+        if (sent < 0 && errno == ENOTSOCK) (void)!write(device, word.bytes.data(), word.size);
         return;
     }
     usbdevfs_bulktransfer transfer{word.endpoint, word.size, word_timeout_ms, word.bytes.data()};

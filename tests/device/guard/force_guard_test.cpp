@@ -121,6 +121,22 @@ TEST_CASE("a guard takes the force away from a thread that is silent, and that i
     CHECK(!guard.hear());
 }
 
+TEST_CASE("a guard writes its word to what is no socket")
+{
+    int ends[2];
+    REQUIRE(pipe(ends) == 0);
+    {
+        const ForceGuard guard(ends[1], 0, GuardedDevice::last_word());
+        std::array<char, 64> bytes{};
+        pollfd heard{ends[0], POLLIN, 0};
+        REQUIRE(poll(&heard, 1, patience_ms) == 1);
+        const ssize_t size = read(ends[0], bytes.data(), bytes.size());
+        CHECK(std::string(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))) == "no force");
+    }
+    close(ends[0]);
+    close(ends[1]);
+}
+
 TEST_CASE("a guard is silent while it hears of the stream, and after an end in order")
 {
     const GuardedDevice device;

@@ -63,13 +63,18 @@ TEST_CASE("push a device until killed", "[.]")
     for (;;) ticks_until(*device, {2, 0, 0}, [](auto, auto&) { return false; });
 }
 
-TEST_CASE("the kernel takes the force from a wheel whose process is killed")
+TEST_CASE("a wheel whose process is stopped or killed has no force")
 {
     UinputWheel wheel;
     PushingProcess process("evdev:" + wheel.path());
     // a fifth of what it can do, by a motor that is wired the other way round
     REQUIRE(comes([&] { return !wheel.uploads().empty() && wheel.uploads().back().level == -6553; }));
     CHECK(wheel.erased().empty());
+    REQUIRE(comes([&] { return wheel.plays().back().value == 1; }));
+    process.stand_still();
+    CHECK(comes([&] { return wheel.plays().back().value == 0; }));
+    process.go_on();
+    CHECK(comes([&] { return wheel.plays().back().value == 1 && wheel.uploads().back().level == -6553; }));
     process.end();
     CHECK(comes([&] { return wheel.erased() == std::vector<int>{wheel.uploads().back().id}; }));
     CHECK(wheel.plays().back().value == 0);
