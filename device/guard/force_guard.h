@@ -24,7 +24,8 @@ inline constexpr const char* guard_process_name = "haptel-guard";
 class ForceGuard {
 public:
     // The bytes go to this OUT endpoint of a node of /dev/bus/usb; endpoint 0: they are written, to a socket or a node
-    // of /dev/input. Nothing is guarded without them or with more than last_word_bytes_max, nor where no process can be had.
+    // of /dev/input. Nothing is guarded without them or with more than last_word_bytes_max, nor where no process can be
+    // had.
     static constexpr std::size_t last_word_bytes_max = 512;
     ForceGuard(int file_descriptor, uint8_t endpoint, std::span<const uint8_t> last_word) noexcept;
     ~ForceGuard(); // the word is not said: who ends in order takes the force away itself
