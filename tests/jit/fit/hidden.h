@@ -16,7 +16,6 @@ struct HiddenParameter {
     std::string name;
     double value = 0;
     double unit = 1; // what 1 % of it is 1 % of
-    bool is_whole = false;
 };
 
 struct Hidden {
@@ -48,14 +47,14 @@ inline HiddenGuess hidden_guess(const Unknowns& unknowns, const haptel_texture& 
         hidden.guess.coordinates[i] = place(random);
         const double value = real.value(hidden.guess.coordinates[i]);
         hidden.parameters.push_back({texture.parameters[real.parameter].name, value,
-                                     std::max(std::abs(value), 1e-3 * (real.maximum - real.minimum)), false});
+                                     std::max(std::abs(value), 1e-3 * (real.maximum - real.minimum))});
     }
     for (std::size_t i = 0; i < unknowns.wholes.size(); ++i) {
         const WholeUnknown& whole = unknowns.wholes[i];
         hidden.guess.wholes[i] =
             whole.minimum + static_cast<int64_t>(random() % static_cast<uint64_t>(whole.maximum - whole.minimum + 1));
         hidden.parameters.push_back(
-            {texture.parameters[whole.parameter].name, static_cast<double>(hidden.guess.wholes[i]), 1, true});
+            {texture.parameters[whole.parameter].name, static_cast<double>(hidden.guess.wholes[i]), 1});
     }
     return hidden;
 }
