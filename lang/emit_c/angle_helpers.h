@@ -2,11 +2,11 @@
 // integers.
 #pragma once
 
-#include "lang/emit_c/helper_text.h"
+#include "lang/emit/helper_text.h"
 
 namespace haptel::emit_c {
 
-inline constexpr HelperText angle_helpers[] = {
+inline constexpr emit::HelperText angle_helpers[] = {
     {"haptel_bits64", R"(static uint64_t haptel_bits64(const double a)
 {
     uint64_t bits;

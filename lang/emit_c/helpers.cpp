@@ -3,22 +3,15 @@
 #include "lang/emit_c/angle_helpers.h"
 #include "lang/emit_c/image_helpers.h"
 #include "lang/emit_c/operation_helpers.h"
-#include "lang/emit_c/written_number.h"
-#include "lang/ir/elementary_functions.h"
-#include "lang/ir/op_info.h"
+#include "lang/emit_c/words.h"
 #include "lang/math/two_over_pi.h"
 
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace haptel::emit_c {
 
 namespace {
-
-struct Helper {
-    std::string name, text;
-};
 
 std::string list_of(std::span<const double> numbers, bool is_single)
 {
@@ -27,7 +20,7 @@ std::string list_of(std::span<const double> numbers, bool is_single)
     return list;
 }
 
-std::vector<std::pair<std::string, std::string>> numbers_of(bool is_single)
+emit::Replacements numbers_of(bool is_single)
 {
     using namespace ir::turn;
     constexpr auto& quarter = ir::elementary::Constants<double>::quarter_turn;
@@ -49,63 +42,33 @@ std::vector<std::pair<std::string, std::string>> numbers_of(bool is_single)
             {"TWO_OVER_PI", words}};
 }
 
-bool is_word(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
-
-// Whether the word stands in the text, not as a part of another.
-bool names(std::string_view text, std::string_view word)
-{
-    for (size_t at = 0; (at = text.find(word, at)) != text.npos; at += word.size())
-        if ((at == 0 || !is_word(text[at - 1])) &&
-            (at + word.size() == text.size() || !is_word(text[at + word.size()])))
-            return true;
-    return false;
-}
-
-std::string specialised(std::string_view text, const std::vector<std::pair<std::string, std::string>>& numbers)
-{
-    std::string made;
-    for (size_t at = 0; at < text.size();) {
-        size_t end = at + 1;
-        if (is_word(text[at]))
-            while (end < text.size() && is_word(text[end])) ++end;
-        std::string_view word = text.substr(at, end - at);
-        for (const auto& [name, value] : numbers)
-            if (word == name) word = value;
-        made += word;
-        at = end;
-    }
-    return made;
-}
-
 template <typename F>
-Helper elementary(const ir::OpInfo& info)
-{
-    using R = Written<F>;
-    Lines lines;
-    const R a(lines, lines.parameter()), b = info.arity == 2 ? R(lines, lines.parameter()) : a;
-    const int result = ir::elementary::apply(info.op, a, b).result();
-    const std::string type(R::type), name = "haptel_" + std::string(info.name);
-    std::string text = "static " + type + " " + name + "(const " + type + " t0";
-    if (info.arity == 2) text += ", const " + type + " t1";
-    return {name, text + ")\n{\n" + lines.text_of(result) + "    return " + Lines::name(result) + ";\n}"};
-}
+struct Words {
+    using Float = F;
+    using Single = Words<float>;
+    using Double = Words<double>;
+    static constexpr bool is_single = sizeof(F) == sizeof(float);
+    static constexpr std::string_view type = is_single ? "float" : "double",
+                                      number = is_single ? "const float" : "const double",
+                                      word = is_single ? "const uint32_t" : "const uint64_t", truth = "const int",
+                                      fabs = is_single ? "fabsf" : "fabs", sqrt = is_single ? "sqrtf" : "sqrt",
+                                      to_bits = is_single ? "haptel_bits32" : "haptel_bits64",
+                                      to_number = is_single ? "haptel_real32" : "haptel_real64";
+    static std::string literal(double value) { return emit_c::literal(value, is_single); }
+};
 
 // All of them, callees first.
-std::vector<Helper> helpers(bool is_single)
+std::vector<emit::Helper> helpers(bool is_single)
 {
-    std::vector<Helper> all;
-    const auto numbers = numbers_of(is_single);
-    const auto add = [&](std::span<const HelperText> texts) {
-        for (const auto& [name, text] : texts) all.push_back({name, specialised(text, numbers)});
-    };
-    add(angle_helpers);
-    add(operation_helpers);
-    add(image_helpers);
-    for (const ir::OpInfo& info : ir::all_ops())
-        if (ir::is_elementary(info.op)) all.push_back(is_single ? elementary<float>(info) : elementary<double>(info));
+    std::vector<emit::Helper> all;
+    const emit::Replacements numbers = numbers_of(is_single);
+    emit::add(all, angle_helpers, numbers);
+    emit::add(all, operation_helpers, numbers);
+    emit::add(all, image_helpers, numbers);
+    if (is_single)
+        emit::add_elementary<Words<float>>(all, "static ", Words<float>::number);
+    else
+        emit::add_elementary<Words<double>>(all, "static ", Words<double>::number);
     return all;
 }
 
@@ -113,12 +76,8 @@ std::vector<Helper> helpers(bool is_single)
 
 std::string helpers_for(std::string_view text, bool is_single)
 {
-    static const std::vector<Helper> of_doubles = helpers(false), of_floats = helpers(true);
-    const std::vector<Helper>& all = is_single ? of_floats : of_doubles;
-    std::string called;
-    for (auto helper = all.rbegin(); helper != all.rend(); ++helper)
-        if (names(text, helper->name) || names(called, helper->name)) called.insert(0, helper->text + "\n\n");
-    return called;
+    static const std::vector<emit::Helper> of_doubles = helpers(false), of_floats = helpers(true);
+    return emit::called_by(text, is_single ? of_floats : of_doubles);
 }
 
 } // namespace haptel::emit_c

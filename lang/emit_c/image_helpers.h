@@ -1,11 +1,11 @@
 // Pictures in C text: the cubic B-spline of lang/math/spline.h, and the other images of the same picture.
 #pragma once
 
-#include "lang/emit_c/helper_text.h"
+#include "lang/emit/helper_text.h"
 
 namespace haptel::emit_c {
 
-inline constexpr HelperText image_helpers[] = {
+inline constexpr emit::HelperText image_helpers[] = {
     {"haptel_image_part",
      R"(static const haptel_image* haptel_image_part(const haptel_image* const image, const int32_t channel, const int32_t level)
 {

@@ -1,11 +1,13 @@
-// Operations of the IR that C has no operator for: as lang/ir/semantics.h has them.
+// Operations of the IR that C has no operator for: as lang/ir/semantics.h has them. In the
+// text `real` is double or float, $ the ending of that type's functions in <math.h>, and what is in capitals one of the
+// numbers in helpers.cpp.
 #pragma once
 
-#include "lang/emit_c/helper_text.h"
+#include "lang/emit/helper_text.h"
 
 namespace haptel::emit_c {
 
-inline constexpr HelperText operation_helpers[] = {
+inline constexpr emit::HelperText operation_helpers[] = {
     {"haptel_min", R"(static real haptel_min(const real a, const real b)
 {
     if (a != a || b != b) return a + b;

@@ -1,6 +1,8 @@
 #include "lang/emit_c/source.h"
 
-#include "lang/emit_c/function.h"
+#include "lang/abi/outputs.h"
+#include "lang/emit/function.h"
+#include "lang/emit_c/c_dialect.h"
 #include "lang/emit_c/header.h"
 #include "lang/emit_c/helpers.h"
 #include "lang/emit_c/words.h"
@@ -86,6 +88,24 @@ std::string data_of(const LibraryTexture& of, const std::string& height, const s
     return text;
 }
 
+// A haptel_entry, which stands behind the module's functions; its name.
+std::string add_entry(emit::ModuleText& module, const ir::Texture& texture, bool with_gradient, bool is_single)
+{
+    const emit::EntryText entry = module.entry(texture, with_gradient);
+    std::string stores = emit::stores(entry, texture, with_gradient, "sample->", is_single ? "(double)" : "");
+    if (with_gradient)
+        for_each_output(outputs_always_written & ~texture.writes, [&](const OutputInfo& output, size_t) {
+            stores += "    sample->" + std::string(output.name) + " = " + literal(output.value) + ";\n";
+        });
+    const std::string name = module.name_prefix() + texture.name + (with_gradient ? "_height_gradient" : "_height");
+    module.append("static void " + name +
+                  "(const haptel_point* const point, const void* const block, haptel_sample* const sample)\n{\n"
+                  "    const " +
+                  block_type(texture) + "* const values = (const " + block_type(texture) +
+                  "*)block;\n    (void)point;\n    (void)values;\n" + entry.statements + stores + "}\n\n");
+    return name;
+}
+
 std::string costs_of(std::span<const LibraryTexture> textures)
 {
     std::string text;
@@ -102,17 +122,17 @@ std::string costs_of(std::span<const LibraryTexture> textures)
 
 std::string source(std::string_view name, std::span<const LibraryTexture> textures, bool is_single)
 {
-    std::deque<ModuleText> modules;
+    const CDialect dialect(is_single);
+    std::deque<emit::ModuleText> modules;
     std::string data, tables, functions;
     for (const LibraryTexture& of : textures) {
         if (modules.empty() || modules.back().source() != of.module)
-            modules.emplace_back(*of.module, "m" + std::to_string(modules.size()) + "_", is_single);
-        ModuleText& module = modules.back();
-        const std::string height = module.entry(of, false), height_gradient = module.entry(of, true);
-        data += data_of(of, height, height_gradient);
+            modules.emplace_back(*of.module, "m" + std::to_string(modules.size()) + "_", dialect);
+        const std::string height = add_entry(modules.back(), *of.texture, false, is_single);
+        data += data_of(of, height, add_entry(modules.back(), *of.texture, true, is_single));
     }
     uint64_t table_bytes = 0, variable_bytes = 0;
-    for (const ModuleText& module : modules) {
+    for (const emit::ModuleText& module : modules) {
         tables += module.tables();
         functions += module.functions();
         table_bytes += module.table_bytes();

@@ -1,7 +1,8 @@
 #include "lang/emit_c/words.h"
 
+#include "lang/emit/shortest.h"
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 
@@ -45,15 +46,6 @@ constexpr std::string_view reserved[] = {"alignas",      "alignof",   "and",
                                          "void",         "volatile",  "wchar_t",
                                          "while",        "xor",       "xor_eq"};
 
-template <typename F>
-std::string shortest(F value)
-{
-    char digits[64];
-    std::string text(digits, std::to_chars(digits, std::end(digits), value).ptr);
-    if (text.find_first_of(".e") == text.npos) text += ".0";
-    return text;
-}
-
 } // namespace
 
 std::string literal(double value, bool is_single)
@@ -61,8 +53,9 @@ std::string literal(double value, bool is_single)
     const double held = is_single ? static_cast<float>(value) : value;
     if (std::isnan(held)) return is_single ? "NAN" : "(double)NAN";
     const std::string infinite = is_single ? "HUGE_VALF" : "HUGE_VAL";
-    const std::string text = std::isinf(held) ? (held < 0 ? "-" : "") + infinite
-                                              : (is_single ? shortest(static_cast<float>(held)) + "F" : shortest(held));
+    const std::string text = std::isinf(held)
+                                 ? (held < 0 ? "-" : "") + infinite
+                                 : (is_single ? emit::shortest(static_cast<float>(held)) + "F" : emit::shortest(held));
     return std::signbit(held) ? "(" + text + ")" : text;
 }
 

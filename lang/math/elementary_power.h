@@ -61,6 +61,15 @@ R short_power_of_positive(R x, R y)
     return near * power_of_two(k);
 }
 
+// The way of y to the nearest even number, of either sign: 0, or 1 for an odd one. From 2^53 on all are even.
+template <typename R>
+R way_to_even(R y)
+{
+    constexpr double even = 0x1p53;
+    const R reach = select(abs(y) < even, abs(y), constant(y, even));
+    return reach - ((reach + even) - even);
+}
+
 // C99: of |x| at the edges, then the sign, then NaN, and 1 wherever x = 1 or y = 0.
 template <typename R>
 R with_edges_of_power(R x, R y, R positive)
@@ -68,10 +77,7 @@ R with_edges_of_power(R x, R y, R positive)
     const R one = constant(x, 1), nought = constant(x, 0), endless = constant(x, infinity), size = abs(x);
     const R of_zero = select(y < 0, endless, nought), of_infinity = select(y < 0, nought, endless);
     const R edged = select(size == nought, of_zero, select(size == endless, of_infinity, positive));
-    // the way to the nearest even number: 0, or 1 for an odd one; from 2^53 on all are even
-    constexpr double even = 0x1p53;
-    const R reach = select(abs(y) < even, abs(y), constant(y, even)), rest = reach - ((reach + even) - even);
-    const R undefined = select(size == endless, edged, constant(x, not_a_number));
+    const R rest = way_to_even(y), undefined = select(size == endless, edged, constant(x, not_a_number));
     const R of_broken = select(x < 0, undefined, edged), of_even = select(rest == nought, edged, of_broken);
     const R chosen = select(abs(rest) == one, flipped(edged, x), of_even);
     const R sum = x + y;

@@ -9,7 +9,7 @@ set -euo pipefail
 # those of rooms before it; '.' is the house's own folder. '!' refuses what a later word would allow.
 houses=(
     'input: . toml | lang/text/near_name.h'
-    'lang: abi text math ir ir/run ir/derive ir/bounds emit_c syntax format program lower check check/dimension . |'
+    'lang: abi text math ir ir/run ir/derive ir/bounds emit emit_c emit_glsl syntax format program lower check check/dimension . |'
     'libraries: . package | input lang/abi lang/text/near_name.h'
     'stdlib: . |'
     'jit: codegen engine picture texture fit ahead live check | !libraries/package libraries input lang stdlib'

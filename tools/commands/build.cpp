@@ -3,6 +3,7 @@
 #include "jit/texture/facts.h"
 #include "lang/emit_c/header.h"
 #include "lang/emit_c/source.h"
+#include "lang/emit_glsl/source.h"
 #include "tools/arguments/precisions.h"
 #include "tools/arguments/texture_files.h"
 #include "tools/commands/build_shared.h"
@@ -127,12 +128,18 @@ jit::AheadResult make_c(const Library& library, const BuildOptions& options)
     return {emit_c::source(library_name(options), library.textures, options.precision == "f32"), {}};
 }
 
+jit::AheadResult make_glsl(const Library& library, const BuildOptions& options)
+{
+    return {emit_glsl::source(library_name(options), library.textures), {}};
+}
+
 constexpr Maker makers[] = {
     {"object", "machine code, to link into a program", make_object},
     {"static", "the same as a static library, libNAME.a", make_static},
     {"shared", "the same as a shared library, libNAME.so; linked by cc", make_shared_library},
     {"header", "the C header for any of them, and for c", make_header},
     {"c", "C99 text, complete by itself, for any processor", make_c},
+    {"glsl", "functions of GLSL, to draw what is felt: for WebGL 2 and OpenGL 3.3, and later", make_glsl},
     {"llvm", "LLVM's intermediate representation as text", make_llvm},
 };
 

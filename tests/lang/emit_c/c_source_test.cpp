@@ -1,13 +1,9 @@
 // Textures as C text: compiled by the compilers of this machine, without a warning, they are what the interpreter says.
-#include "lang/compile.h"
 #include "lang/emit_c/header.h"
 #include "lang/emit_c/source.h"
-#include "lang/ir/run/interpret.h"
-#include "stdlib/stdlib.h"
+#include "tests/lang/emit/emitted.h"
 #include "tests/support/foreign_textures.h"
 #include "tests/support/haptel_files.h"
-
-#include <fstream>
 
 using namespace haptel;
 using namespace haptel::test;
@@ -27,65 +23,6 @@ bool is_here(const Compiler& compiler)
     return std::system(("command -v " + std::string(compiler.name) + " >/dev/null").c_str()) == 0;
 }
 
-std::string text_of(const std::filesystem::path& file)
-{
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::shared_ptr<const lang::Program> program_of(const std::string& name, const std::string& text)
-{
-    lang::CompileOptions options;
-    for (const stdlib::LibraryFile& file : stdlib::library())
-        options.library.push_back({std::string(file.name), std::string(file.text)});
-    options.load_import = [](std::string_view path, std::string_view importer) {
-        const auto file = std::filesystem::path(importer).parent_path() / path;
-        return lang::Imported(lang::SourceFile{file.string(), text_of(file)});
-    };
-    const lang::CompileResult result = lang::compile({name, text}, options);
-    INFO(lang::render(result.diagnostics.all(), result.sources));
-    REQUIRE(result.program);
-    return result.program;
-}
-
-std::vector<emit_c::LibraryTexture> textures_of(const lang::Program& program)
-{
-    std::vector<emit_c::LibraryTexture> textures;
-    for (const ir::Texture& texture : program.module.textures)
-        textures.push_back({&program.module, &texture, {-HUGE_VAL, HUGE_VAL, 1.5, HUGE_VAL, 1, 42}, "file.haptel"});
-    return textures;
-}
-
-// By the interpreter.
-haptel_sample expected(ir::Interpreter<double>& interpreter, const ir::Texture& texture, const haptel_point& point,
-                       const std::vector<double>& block, bool with_gradient)
-{
-    ir::EntryInputs<double> inputs;
-    constexpr size_t of_point = sizeof point / sizeof(double);
-    std::memcpy(inputs.input, &point, sizeof point);
-    std::memcpy(inputs.input + of_point, block.data(), sizeof(haptel_block_head));
-    for (const ir::Parameter& parameter : texture.parameters) {
-        const char* const place = reinterpret_cast<const char*>(block.data()) + parameter.offset;
-        ir::Slot<double>& slot = inputs.parameters.emplace_back();
-        if (parameter.type == ir::Type::real)
-            std::memcpy(&slot.real, place, sizeof slot.real);
-        else if (parameter.type == ir::Type::image)
-            std::memcpy(&slot.image, place, sizeof slot.image);
-        else
-            std::memcpy(&slot.bits, place, sizeof slot.bits);
-    }
-    haptel_sample sample = blank_sample;
-    const auto results = interpreter.run(with_gradient ? texture.height_gradient : texture.height, {}, &inputs);
-    sample.height_m = results[0].real;
-    sample.faults = results[with_gradient ? 4 : 1].bits;
-    if (!with_gradient) return sample;
-    for (size_t i = 0; i < 3; ++i) sample.gradient[i] = results[1 + i].real;
-    for_each_output(texture.writes, [&](const OutputInfo& output, size_t first) {
-        for (size_t i = 0; i < output.components; ++i) components_of(sample, output)[i] = results[5 + first + i].real;
-    });
-    return sample;
-}
-
 // How many of so many samples of each texture differ from the interpreter's in a bit.
 size_t different_samples(const lang::Program& program, const ForeignTextures& library, int rounds)
 {
@@ -102,7 +39,7 @@ size_t different_samples(const lang::Program& program, const ForeignTextures& li
             for (const bool with_gradient : {false, true}) {
                 haptel_sample sample = blank_sample;
                 (with_gradient ? made->height_gradient : made->height)(&point, block.data(), &sample);
-                different += !same_samples(sample, expected(interpreter, texture, point, block, with_gradient));
+                different += !same_samples(sample, interpreted(interpreter, texture, point, block, with_gradient));
             }
         }
     }
@@ -238,7 +175,7 @@ TEST_CASE("every operation in C has the bits of the interpreter, at any operand"
             }
             haptel_sample sample = blank_sample;
             library.texture(texture.name)->height_gradient(&point, block.data(), &sample);
-            different += !same_samples(sample, expected(interpreter, texture, point, block, true));
+            different += !same_samples(sample, interpreted(interpreter, texture, point, block, true));
         }
         CAPTURE(terms[&texture - program->module.textures.data()]);
         CHECK(different == 0);

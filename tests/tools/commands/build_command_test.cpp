@@ -2,6 +2,7 @@
 #include "tests/support/catch.h"
 #include "tests/tools/commands/run_command.h"
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 using namespace haptel::test;
@@ -84,6 +85,21 @@ TEST_CASE("a C program gets of each kind of output what haptel eval says, and li
         CHECK(read_file(folder.file(kind.file)) == first);
     }
     CHECK(contains(run_command("build '" + file + "' --emit llvm -o /dev/null").err, "no regular file"));
+}
+
+TEST_CASE("a shader gets a texture under the name of its file")
+{
+    const Folder folder;
+    const std::string file = folder.write("ripples.haptel", ripples);
+    const Ran built = run_command("build '" + file + "' --emit glsl -o " + quoted_file(folder, "rings.glsl"));
+    REQUIRE(built.code == 0);
+    std::ifstream in(folder.file("rings.glsl"));
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    CHECK(text.starts_with("// rings: "));
+    for (const char* declared : {"struct haptel_block_ripples {", "haptel_defaults_ripples", "haptel_height_ripples(",
+                                 "haptel_height_gradient_ripples("})
+        CHECK(text.find(declared) != std::string::npos);
+    CHECK(text.find("#version") == std::string::npos); // it is the shader's
 }
 
 TEST_CASE("a folder becomes one library, and FILE:NAME one texture of it")

@@ -1,10 +1,13 @@
-// A number of lang/math/elementary_*.h that is C text: each step appends the line that computes it.
+// A number of lang/math/elementary_*.h that is text of a language: each step appends the line that computes it.
+//
+// `Words`, of a language and a width, say how it is written: number, word and truth are what declares variables that
+// are set once, type is that of a number, fabs and sqrt are names of functions, to_bits and to_number of those that
+// read bits as the other, and literal() writes a constant. Single and Double are the words of the two widths.
 //
 // So the text has the bits of the interpreter by construction, as machine code has (jit/codegen/codegen_math.cpp).
 // Lines that no result is made from are left out: compilers warn of them.
 #pragma once
 
-#include "lang/emit_c/words.h"
 #include "lang/math/elementary_number.h"
 
 #include <initializer_list>
@@ -12,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace haptel::emit_c {
+namespace haptel::emit {
 
 // The body of one function in the making: every variable is set once and named by its number.
 class Lines {
@@ -23,9 +26,8 @@ public:
     int add(std::string_view type, std::string_view expression, std::initializer_list<int> uses)
     {
         const int made = count++;
-        lines.push_back({"    const " + std::string(type) + " " + name(made) + " = " + std::string(expression) + ";\n",
-                         {made},
-                         uses});
+        lines.push_back(
+            {"    " + std::string(type) + " " + name(made) + " = " + std::string(expression) + ";\n", {made}, uses});
         return made;
     }
     // As it is; sets variables that new_variables() has named.
@@ -66,9 +68,10 @@ struct WrittenTruth {
 };
 
 // A word for each number, of its width.
+template <typename Words>
 class WrittenWord {
 public:
-    WrittenWord(Lines& to, int made, int of_width) : lines(&to), variable(made), width(of_width) {}
+    WrittenWord(Lines& to, int made) : lines(&to), variable(made) {}
 
     friend WrittenWord operator+(WrittenWord a, uint64_t b) { return a.with("+", b); }
     friend WrittenWord operator&(WrittenWord a, uint64_t b) { return a.with("&", b); }
@@ -87,32 +90,31 @@ public:
     }
     friend WrittenTruth is_set(WrittenWord a)
     {
-        return {a.lines, a.lines->add("int", a.text() + " != 0", {a.variable})};
+        return {a.lines, a.lines->add(Words::truth, a.text() + " != 0u", {a.variable})};
     }
     std::string text() const { return Lines::name(variable); }
     int number() const { return variable; }
 
 private:
     Lines* lines;
-    int variable, width;
+    int variable;
 
     WrittenWord made(const std::string& expression, std::initializer_list<int> uses) const
     {
-        return {*lines, lines->add(width == 64 ? "uint64_t" : "uint32_t", expression, uses), width};
+        return {*lines, lines->add(Words::word, expression, uses)};
     }
     WrittenWord with(const std::string& op, uint64_t word) const
     {
-        const std::string other = width == 64 ? std::to_string(word) + "u" : literal(static_cast<uint32_t>(word));
-        return made(text() + " " + op + " " + other, {variable});
+        using Bits = typename ir::elementary::Format<typename Words::Float>::Bits;
+        return made(text() + " " + op + " " + std::to_string(static_cast<Bits>(word)) + "u", {variable});
     }
 };
 
-template <typename F>
+template <typename Words>
 class Written {
 public:
-    using Float = F;
-    static constexpr bool is_single = sizeof(F) == sizeof(float);
-    static constexpr std::string_view type = is_single ? "float" : "double";
+    using Float = typename Words::Float;
+    static constexpr bool is_single = sizeof(Float) == sizeof(float);
 
     Written(Lines& to, int made) : lines(&to), variable(made) {}
     Written(double constant_number) : number(constant_number) {}
@@ -121,18 +123,18 @@ public:
     friend Written operator-(Written a, Written b) { return made(a, " - ", b); }
     friend Written operator*(Written a, Written b) { return made(a, " * ", b); }
     friend Written operator/(Written a, Written b) { return made(a, " / ", b); }
-    friend Written operator-(Written a) { return a.held("-" + a.text(), {a.variable}); }
+    friend Written operator-(Written a) { return a.held("-" + a.text()); }
     friend WrittenTruth operator<(Written a, Written b) { return compared(a, " < ", b); }
     friend WrittenTruth operator>(Written a, Written b) { return compared(a, " > ", b); }
     friend WrittenTruth operator==(Written a, Written b) { return compared(a, " == ", b); }
 
-    friend Written abs(Written a) { return a.called("fabs"); }
-    friend Written sqrt(Written a) { return a.called("sqrt"); }
+    friend Written abs(Written a) { return a.called(Words::fabs); }
+    friend Written sqrt(Written a) { return a.called(Words::sqrt); }
     friend Written select(WrittenTruth condition, Written a, Written b)
     {
         Lines& lines = *condition.lines;
         const std::string text = Lines::name(condition.variable) + " ? " + a.text() + " : " + b.text();
-        return {lines, lines.add(type, text, {condition.variable, a.variable, b.variable})};
+        return {lines, lines.add(Words::number, text, {condition.variable, a.variable, b.variable})};
     }
     friend Written constant(Written like, double number)
     {
@@ -141,25 +143,19 @@ public:
         return made;
     }
 
-    friend WrittenWord bits(Written a)
+    friend WrittenWord<Words> bits(Written a)
     {
-        constexpr int width = ir::elementary::Format<F>::width;
-        const std::string text = "haptel_bits" + std::to_string(width) + "(" + a.text() + ")";
-        return {*a.lines, a.lines->add(is_single ? "uint32_t" : "uint64_t", text, {a.variable}), width};
+        const std::string text = std::string(Words::to_bits) + "(" + a.text() + ")";
+        return {*a.lines, a.lines->add(Words::word, text, {a.variable})};
     }
-    friend Written with_bits(Written like, WrittenWord bits)
+    friend Written with_bits(Written like, WrittenWord<Words> bits)
     {
-        return like.held((is_single ? "haptel_real32(" : "haptel_real64(") + bits.text() + ")", {bits.number()});
+        const std::string text = std::string(Words::to_number) + "(" + bits.text() + ")";
+        return {*like.lines, like.lines->add(Words::number, text, {bits.number()})};
     }
 
-    friend Written<float> narrow(Written a)
-    {
-        return {*a.lines, a.lines->add("float", "(float)" + a.text(), {a.variable})};
-    }
-    friend Written<double> widen(Written a)
-    {
-        return {*a.lines, a.lines->add("double", "(double)" + a.text(), {a.variable})};
-    }
+    friend auto narrow(Written a) { return a.template as<typename Words::Single>(); }
+    friend auto widen(Written a) { return a.template as<typename Words::Double>(); }
 
     friend void reduce_where(WrittenTruth condition, Written a, ir::elementary::Angle<Written>& angle)
     {
@@ -169,7 +165,7 @@ public:
         for (Written* part : parts) {
             sets.push_back(a.lines->new_variable());
             const std::string name = Lines::name(sets.back());
-            text += "    double " + name + " = " + part->text() + ";\n";
+            text += "    " + std::string(Words::type) + " " + name + " = " + part->text() + ";\n";
             places += ", &" + name;
         }
         text += "    if (" + Lines::name(condition.variable) + ") haptel_reduce_angle(" + a.text() + places + ");\n";
@@ -178,6 +174,8 @@ public:
         for (size_t i = 0; i < 3; ++i) *parts[i] = Written(*a.lines, sets[i]);
     }
 
+    // The result of a function of the language.
+    Written called(std::string_view function) const { return held(std::string(function) + "(" + text() + ")"); }
     int result() const { return variable; }
 
 private:
@@ -185,26 +183,27 @@ private:
     int variable = -1;      // below 0: it is a constant
     double number = 0;
 
-    std::string text() const { return variable < 0 ? literal(number, is_single) : Lines::name(variable); }
-    Written held(const std::string& expression, std::initializer_list<int> uses) const
+    std::string text() const { return variable < 0 ? Words::literal(number) : Lines::name(variable); }
+    Written held(const std::string& expression) const
     {
-        return {*lines, lines->add(type, expression, uses)};
+        return {*lines, lines->add(Words::number, expression, {variable})};
     }
-    Written called(const std::string& function) const
+    template <typename Other>
+    Written<Other> as() const
     {
-        return held(function + (is_single ? "f(" : "(") + text() + ")", {variable});
+        return {*lines, lines->add(Other::number, "(" + std::string(Other::type) + ")" + text(), {variable})};
     }
     static Lines& lines_of(Written a, Written b) { return a.lines ? *a.lines : *b.lines; }
     static Written made(Written a, const char* op, Written b)
     {
         Lines& to = lines_of(a, b);
-        return {to, to.add(type, a.text() + op + b.text(), {a.variable, b.variable})};
+        return {to, to.add(Words::number, a.text() + op + b.text(), {a.variable, b.variable})};
     }
     static WrittenTruth compared(Written a, const char* op, Written b)
     {
         Lines& to = lines_of(a, b);
-        return {&to, to.add("int", a.text() + op + b.text(), {a.variable, b.variable})};
+        return {&to, to.add(Words::truth, a.text() + op + b.text(), {a.variable, b.variable})};
     }
 };
 
-} // namespace haptel::emit_c
+} // namespace haptel::emit

@@ -1,0 +1,168 @@
+// Textures as GLSL: glslang takes the text in every version that it is for, and what Mesa computes with it is what
+// rounding each operation to f32 can lead to from the 113-bit truth (support/ball.h).
+#include "lang/emit_glsl/image_words.h"
+#include "lang/emit_glsl/names.h"
+#include "lang/emit_glsl/source.h"
+#include "tests/lang/emit_glsl/square.h"
+#include "tests/support/ball.h"
+#include "tests/support/haptel_files.h"
+
+using namespace haptel;
+using namespace haptel::test;
+
+namespace {
+
+// The library's, the examples' and the materials'.
+std::vector<std::filesystem::path> all_textures()
+{
+    std::vector<std::string> folders = {"stdlib/tests", "examples/textures"};
+    for (const char* family :
+         {"fabric", "food", "leather", "metal", "paper", "perception", "plastic", "skin", "stone", "wood"})
+        folders.push_back("materials/" + std::string(family));
+    return texture_files(folders);
+}
+
+constexpr size_t output_places[] = {7, 8, 9, 10, 11, 12, 15, 16, 17}; // in fragment(), by bit
+
+struct Expected {
+    std::string what;
+    size_t place;
+    Ball ball;
+};
+
+// Nothing where rounding decides.
+std::vector<Expected> expected(ir::Interpreter<Ball>& interpreter, const ir::Texture& texture,
+                               const haptel_point& point, const std::vector<double>& block)
+{
+    Ball::in_singles = true;
+    Ball::undecided = false;
+    const ir::EntryInputs<Ball> inputs = inputs_of<Ball>(texture, point, block);
+    const auto balls = interpreter.run(texture.height_gradient, {}, &inputs);
+    Ball::in_singles = false;
+    if (Ball::undecided) return {};
+    std::vector<Expected> all = {
+        {"height", 0, balls[0].real}, {"faults", 4, Ball(balls[4].bits)}, {"the height alone", 5, balls[0].real}};
+    for (size_t i = 0; i < 3; ++i) all.push_back({"gradient", 1 + i, balls[1 + i].real});
+    for_each_output(texture.writes, [&](const OutputInfo& output, size_t first) {
+        const size_t place = output_places[&output - output_table];
+        for (size_t i = 0; i < output.components; ++i)
+            all.push_back({std::string(output.name), place + i, balls[5 + first + i].real});
+    });
+    return all;
+}
+
+std::vector<const ir::Texture*> pointers_to(const std::vector<ir::Texture>& textures)
+{
+    std::vector<const ir::Texture*> all;
+    for (const ir::Texture& texture : textures) all.push_back(&texture);
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("in Mesa a texture's GLSL gives what rounding to f32 can lead to")
+{
+    const ShaderContext context;
+    size_t samples = 0, undecided = 0, numbers = 0, loose = 0;
+    for (const auto& file : all_textures()) {
+        const auto program = program_of(file, text_of(file));
+        const std::string text = emit_glsl::source("textures", textures_of(*program));
+        ir::Interpreter<Ball> interpreter(program->module);
+        const std::vector<const ir::Texture*> textures = pointers_to(program->module.textures);
+        const std::vector<std::string> names = emit_glsl::texture_names(textures);
+        for (size_t index = 0; index < textures.size(); ++index) {
+            const ir::Texture& texture = *textures[index];
+            CAPTURE(file, texture.name);
+            FloatStimuli stimuli(7);
+            const Square square(stimuli, 3);
+            std::vector<uint32_t> words;
+            const int32_t image = emit_glsl::append_image(words, stimuli.picture());
+            const char* const version = versions[samples / square.points.size() / 2 % std::size(versions)]; // in turns
+            const std::unique_ptr<Shader> shader = square.shader(version, text, names[index]);
+            shader->set_words("haptel_images", 16, words);
+            for (const bool is_default : {true, false}) {
+                const std::vector<double> block = stimuli.block(texture, is_default);
+                set_block(*shader, texture, block, image);
+                const std::vector<float> made = shader->run();
+                for (size_t point = 0; point < square.points.size(); ++point) {
+                    const std::vector<Expected> all = expected(interpreter, texture, square.points[point], block);
+                    ++samples;
+                    undecided += all.empty();
+                    for (const Expected& number : all) {
+                        ++numbers;
+                        loose += !(number.ball.radius < 1e-3 * fabs(number.ball.middle) + 1e-7);
+                        const float found = square.result(made, point, number.place);
+                        if (number.ball.may_be(found)) continue;
+                        CAPTURE(version, point, number.what, found);
+                        CHECK(static_cast<double>(number.ball) == found);
+                    }
+                }
+            }
+        }
+    }
+    WARN(context.renderer() << ": of " << samples << " samples rounding decides " << undecided << "; of " << numbers
+                            << " numbers it may change " << loose << " by a thousandth or more");
+    CHECK(undecided < samples / 4);
+    CHECK(loose < numbers / 4);
+}
+
+TEST_CASE("several texts stand in one shader, whatever textures and parameters are called")
+{
+    const auto odd = program_of("odd.haptel", R"(
+/// Ends with a backslash \\
+texture a__b(float highp = 1mm in 0mm .. 2mm, int sample = 3 in 1 .. 5, uint u = 4000000000u, bool on = true,
+             vec2 size = vec2(1mm, 2mm), int kind = flat in {flat, round}, float gl_x = 1mm, float head = 0mm,
+             float length = 1mm, float x__y = 1mm, float x_y = 2mm)
+{
+    return on ? highp * sinturn(p.x / size.y) + x__y + x_y + gl_x + head + length : 0mm;
+}
+texture a_b(float isampler2D = 3mm) { return isampler2D * cos(p.x / 1m); }
+)");
+    const auto other = program_of("other.haptel", "texture main(int depth = -2147483648) { return 1mm * "
+                                                  "cos(p.x / 1m) * float(depth) / 2147483648.0 * sinturn(p.y / 1m); }");
+    const std::string both =
+        emit_glsl::source("odd", textures_of(*odd)) + emit_glsl::source("the other", textures_of(*other));
+    const ShaderContext context;
+    FloatStimuli stimuli(1);
+    const Square square(stimuli, 2);
+    for (const char* version : versions) {
+        for (const auto& [program, index, name] : {std::tuple{odd, 0, "a_b"}, {odd, 1, "a_b_"}, {other, 0, "main"}}) {
+            const ir::Texture& texture = program->module.textures[static_cast<size_t>(index)];
+            CAPTURE(version, name);
+            const auto shader = square.shader(version, both, name);
+            const std::vector<double> block = stimuli.block(texture, true);
+            set_block(*shader, texture, block, 0);
+            const std::vector<float> made = shader->run();
+            ir::Interpreter<double> interpreter(program->module);
+            for (size_t i = 0; i < square.points.size(); ++i) {
+                const double truth = interpreted(interpreter, texture, square.points[i], block, false).height_m;
+                CHECK(std::fabs(square.result(made, i, 0) - truth) < 1e-6 * (std::fabs(truth) + 1e-4));
+            }
+        }
+    }
+}
+
+TEST_CASE("glslang takes a texture's GLSL in every version that it is for")
+{
+    if (std::system("command -v glslangValidator >/dev/null") != 0) {
+        WARN("not tried: glslangValidator (glslang-tools) is not here");
+        return;
+    }
+    const Folder folder;
+    std::string files;
+    size_t count = 0;
+    for (const auto& file : all_textures()) {
+        const auto program = program_of(file, text_of(file));
+        const std::string text = emit_glsl::source(file.stem().string(), textures_of(*program));
+        for (const char* version : {"300 es", "320 es", "330", "450"}) {
+            const std::string name = std::to_string(count++) + ".frag";
+            folder.write(name, "#version " + std::string(version) + "\n" + text +
+                                   "out highp vec4 colour;\nvoid main()\n{\n    colour = vec4(0.0);\n}\n");
+            files += " " + name;
+        }
+    }
+    INFO(folder.path);
+    CHECK(std::system(("cd '" + folder.path.string() + "' && glslangValidator" + files + " >said").c_str()) == 0);
+    INFO(text_of(folder.path / "said"));
+    CHECK(text_of(folder.path / "said").find("ERROR") == std::string::npos);
+}
