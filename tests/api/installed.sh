@@ -22,7 +22,7 @@ install_parts runtime tools development
 configure without_compiler
 "$folder/without_compiler/own_loop" || fail "the example with its own loop failed"
 ldd "$folder/without_compiler/own_loop" | grep -i llvm && fail "LLVM is loaded without a compiler"
-install_parts compiler
+install_parts compiler compiler_development python
 
 for header in "$root"/include/haptel/*.h; do
     name=haptel/${header##*/}
