@@ -40,6 +40,17 @@ configure examples
 "$folder/examples/plain" "$source/examples/textures/stone.haptel:stone" || fail "the example in C failed"
 "$folder/examples/ball" "$source/examples/textures/stone.haptel:stone" || fail "the example of a ball failed"
 
+build_chai3d() { # OPTION...
+    cmake -S "$source/examples/chai3d" -B "$folder/chai3d" -DCMAKE_PREFIX_PATH="$root" -DCMAKE_CXX_COMPILER="$compiler" \
+        -DCMAKE_CXX_FLAGS="-Wall -Wextra -Werror" "$@" >"$folder.log" && cmake --build "$folder/chai3d" >>"$folder.log" ||
+        { cat "$folder.log"; exit 1; }
+}
+build_chai3d -DCMAKE_DISABLE_FIND_PACKAGE_CHAI3D=ON
+[[ ! -e $folder/chai3d/feel ]] || fail "the example for CHAI3D is built without it"
+build_chai3d -DCMAKE_DISABLE_FIND_PACKAGE_CHAI3D=OFF -DCHAI3D_DIR="$source/tests/api/chai3d_stand_in"
+felt=$("$folder/chai3d/feel" 0.3) # at 500 N/m, 2 mm into the ball where a wave is highest
+[[ $felt == "at most 1.00 N" ]] || fail "the example for CHAI3D: $felt"
+
 export PKG_CONFIG_PATH
 PKG_CONFIG_PATH=$(find "$root" -type d -name pkgconfig)
 libraries=$(dirname "$PKG_CONFIG_PATH")
