@@ -69,7 +69,8 @@ figure("profile", ["x_m", "height_m", "slope"], [(x, h, g[0]) for x, h, g in zip
 
 # %% Error against time: the gradient that comes with the height, and differences of six more heights, which are exact
 # at no step. The truth is the closed form.
-points = [(1.7e-5 * i - 0.01, 3e-6 * i, 0) for i in range(500 if options.small else 20000)]
+count = 500 if options.small else 20000
+points = [(0.02 * i / count - 0.01, 3e-6 * i, 0) for i in range(count)]
 steepest = 2 * math.pi * depth_m / wave_m
 truth = [steepest * math.cos(2 * math.pi * x / wave_m) for x, _, _ in points]
 
