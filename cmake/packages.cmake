@@ -84,6 +84,13 @@ function(haptel_package component name section summary text)
     set(CPACK_COMPONENTS_ALL ${CPACK_COMPONENTS_ALL} ${component} PARENT_SCOPE)
 endfunction()
 
+# The manual page of the command says what its --help does.
+add_custom_command(OUTPUT ${package_files}/haptel.1.gz
+    COMMAND sh -c "'$<TARGET_FILE:haptel>' --help | awk -v version=${PROJECT_VERSION} -f '${PROJECT_SOURCE_DIR}/cmake/manual_page.awk' | gzip -9n > haptel.1.gz"
+    DEPENDS haptel ${PROJECT_SOURCE_DIR}/cmake/manual_page.awk WORKING_DIRECTORY ${package_files} VERBATIM)
+add_custom_target(haptel_manual_page ALL DEPENDS ${package_files}/haptel.1.gz)
+install(FILES ${package_files}/haptel.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools OPTIONAL)
+
 set(of_this_build "(= ${package_version})")
 set(CPACK_COMPONENTS_ALL)
 haptel_package(runtime libhaptel${package_so} libs

@@ -44,7 +44,7 @@ for name in $expected; do
     others=$(dpkg-deb -c "${of[$name]}" | grep -v '^d' | awk '{ print $6 }' | grep -v "^\./usr/share/doc/$name/") ||
         fail "$name is empty"
     case $name in
-    haptel) allowed='bin/haptel$' ;;
+    haptel) allowed='(bin/haptel|share/man/man1/haptel\.1\.gz)$' ;;
     haptel-materials) allowed='share/haptel/libraries/materials/' ;;
     haptel-udev) allowed='lib/udev/rules\.d/' ;;
     python3-haptel) allowed='lib/python3/dist-packages/haptel\.py$' ;;
@@ -53,6 +53,10 @@ for name in $expected; do
     *) allowed="lib/(.*/)?lib[a-z_]*\.so\.$so" ;; # nothing that another version has, too
     esac
     ! grep -vE "^\./usr/$allowed" <<<"$others" || fail "$name has files that belong elsewhere"
+done
+pages=$(dpkg-deb --fsys-tarfile "${of[haptel]}" | tar -xO ./usr/share/man/man1/haptel.1.gz | gzip -d)
+for command in explore build install; do
+    grep -qx "\.B $command" <<<"$pages" || fail "the manual page knows no $command"
 done
 needs "libhaptel$so" 'libc6 \('
 needs "libhaptel$so" 'libusb-1'
