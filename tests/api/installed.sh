@@ -22,6 +22,12 @@ install_parts runtime tools development
 configure without_compiler
 "$folder/without_compiler/own_loop" || fail "the example with its own loop failed"
 ldd "$folder/without_compiler/own_loop" | grep -i llvm && fail "LLVM is loaded without a compiler"
+mkdir "$folder/needs_compiler"
+printf 'cmake_minimum_required(VERSION 3.25)\nproject(needs LANGUAGES CXX)\nfind_package(Haptel REQUIRED COMPONENTS compiler)\n' \
+    >"$folder/needs_compiler/CMakeLists.txt"
+! cmake -S "$folder/needs_compiler" -B "$folder/needs_compiler/build" -DCMAKE_PREFIX_PATH="$root" >"$folder.log" 2>&1 ||
+    fail "a compiler is found that is not installed"
+grep -q "compiler of textures is not" "$folder.log" || { cat "$folder.log"; fail "it is not said what is missing"; }
 install_parts compiler compiler_development python
 
 for header in "$root"/include/haptel/*.h; do
