@@ -10,8 +10,9 @@
 
 namespace haptel {
 
+// What a tick gives.
 struct Force {
-    Vec3 force_n = {};
+    Vec3 force_n = {};       // on the hand, in the world frame, within the limit of the scene
     Vec3 torque_n_m = {};    // of a stylus, about its grip
     double grip_force_n = 0; // of a gripper: how hard its fingers are pushed apart
     uint32_t contacts = 0;   // objects touched
@@ -20,6 +21,7 @@ struct Force {
     uint32_t faults = 0;     // bits; 0: none
 };
 
+// Of one hand: what it touched in the tick before decides where it is held in this one.
 class HAPTEL_API Renderer {
 public:
     explicit Renderer(const Scene& scene); // not on the loop's thread, if that may not wait
@@ -27,7 +29,7 @@ public:
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
-    explicit operator bool() const;
+    explicit operator bool() const;      // false: messages() says why
     const std::string& messages() const; // why all forces are 0; empty: all is well
 
     // Once per period of the scene's rate; `periods`, if the loop was late, how many went by. Allocates, locks, throws

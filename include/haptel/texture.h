@@ -21,10 +21,12 @@ public:
     TextureSource() = default;
 
     struct Implementation;
+    // By compiler and precompiled.
     explicit TextureSource(std::shared_ptr<const Implementation> implementation)
         : implementation_(std::move(implementation))
     {
     }
+    // For scenes.
     const Implementation* implementation() const { return implementation_.get(); }
 
 private:

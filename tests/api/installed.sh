@@ -22,7 +22,13 @@ install_parts runtime tools development
 configure without_compiler
 "$folder/without_compiler/own_loop" || fail "the example with its own loop failed"
 ldd "$folder/without_compiler/own_loop" | grep -i llvm && fail "LLVM is loaded without a compiler"
-install_parts compiler
+mkdir "$folder/needs_compiler"
+printf 'cmake_minimum_required(VERSION 3.25)\nproject(needs LANGUAGES CXX)\nfind_package(Haptel REQUIRED COMPONENTS compiler)\n' \
+    >"$folder/needs_compiler/CMakeLists.txt"
+! cmake -S "$folder/needs_compiler" -B "$folder/needs_compiler/build" -DCMAKE_PREFIX_PATH="$root" >"$folder.log" 2>&1 ||
+    fail "a compiler is found that is not installed"
+grep -q "compiler of textures is not" "$folder.log" || { cat "$folder.log"; fail "it is not said what is missing"; }
+install_parts compiler compiler_development python
 
 for header in "$root"/include/haptel/*.h; do
     name=haptel/${header##*/}
@@ -39,6 +45,17 @@ cc -std=c99 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$root/include" "$s
 configure examples
 "$folder/examples/plain" "$source/examples/textures/stone.haptel:stone" || fail "the example in C failed"
 "$folder/examples/ball" "$source/examples/textures/stone.haptel:stone" || fail "the example of a ball failed"
+
+build_chai3d() { # OPTION...
+    cmake -S "$source/examples/chai3d" -B "$folder/chai3d" -DCMAKE_PREFIX_PATH="$root" -DCMAKE_CXX_COMPILER="$compiler" \
+        -DCMAKE_CXX_FLAGS="-Wall -Wextra -Werror" "$@" >"$folder.log" && cmake --build "$folder/chai3d" >>"$folder.log" ||
+        { cat "$folder.log"; exit 1; }
+}
+build_chai3d -DCMAKE_DISABLE_FIND_PACKAGE_CHAI3D=ON
+[[ ! -e $folder/chai3d/feel ]] || fail "the example for CHAI3D is built without it"
+build_chai3d -DCMAKE_DISABLE_FIND_PACKAGE_CHAI3D=OFF -DCHAI3D_DIR="$source/tests/api/chai3d_stand_in"
+felt=$("$folder/chai3d/feel" 0.3) # at 500 N/m, 2 mm into the ball where a wave is highest
+[[ $felt == "at most 1.00 N" ]] || fail "the example for CHAI3D: $felt"
 
 export PKG_CONFIG_PATH
 PKG_CONFIG_PATH=$(find "$root" -type d -name pkgconfig)

@@ -18,7 +18,7 @@ houses=(
     'api: . | include/haptel input/toml runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
     'api/compiler: . | include/haptel api jit lang/abi'
     'tools: output arguments plot sound report library control commands . | input libraries lang stdlib jit runtime device bench'
-    'tests/api: . | tests/support'
+    'tests/api: . | tests/support examples/chai3d'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
     'tests/runtime: . | tests/support input/toml runtime lang/abi'
 )
@@ -28,7 +28,7 @@ declare -A home=(
     [llvm/]='jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='input/toml'
     [assimp/]='runtime/files' [boost/]='lang/math device/inverse3 tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
-    [haptel/]='include/haptel api examples/library tests/api'
+    [haptel/]='include/haptel api examples/library examples/chai3d tests/api'
     [Eigen/]='jit/fit' [unsupported/Eigen/]='jit/fit'
     [zip.h]='libraries/package' [sha2.h]='libraries'
     [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device' [lo/]='tools/control'

@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# packages.sh PACKAGES SOURCE [SUITE]: installs the Debian packages of a folder in a bare Debian that has a compiler of
+# C++, CMake, pkg-config and Python, and uses them there as somebody would who has nothing else of Haptel. The packages
+# are for the release on which they were made, SUITE (bookworm, trixie), or else that of this machine. Needs mmdebstrap,
+# the network, and no root where the system lets users have namespaces. Nothing stays behind.
+set -euo pipefail
+
+say() { printf '==> %s\n' "$*"; }
+fail() { printf 'packages.sh: %s\n' "$*" >&2; exit 1; }
+
+if [[ ${1:-} != inside ]]; then
+    packages=$(realpath "$1") source=$(realpath "$2")
+    suite=${3:-$(. /etc/os-release && echo "$VERSION_CODENAME")}
+    made=$(mktemp -d)
+    trap 'rm -rf "$made"' EXIT
+    chmod 755 "$made"
+    mkdir "$made/haptel"
+    cp "$packages"/*.deb "$source/tests/api/packages.sh" "$source/tests/api/python_test.py" \
+        "$source/examples/textures/stone.haptel" "$made/haptel"
+    cp -r "$source/examples/library" "$made/haptel"
+    say "a bare $suite"
+    mmdebstrap --quiet --variant=apt --include=g++,cmake,make,pkg-config,python3 --format=null \
+        --customize-hook="copy-in $made/haptel /" --customize-hook='chroot "$1" /haptel/packages.sh inside' \
+        "$suite" /dev/null
+    exit
+fi
+
+# From here on in the bare system, as its root.
+cd /haptel
+export DEBIAN_FRONTEND=noninteractive HOME=/root CXXFLAGS=-Wall LC_ALL=C.UTF-8
+get() { # NAME...: as `apt install` does, with what they need of the system
+    local files=() name
+    for name in "$@"; do files+=(/haptel/"$name"_*.deb); done
+    say "apt-get install $*"
+    apt-get -qq -o Dpkg::Use-Pty=0 install --yes --no-install-recommends "${files[@]}" >log 2>&1 || { cat log; exit 1; }
+}
+configure() {
+    say "cmake -S library -B $1"
+    cmake -S library -B "$1" >log 2>&1 && cmake --build "$1" >>log 2>&1 || { cat log; exit 1; }
+}
+lists() { # NAME: whether a package of that name is installed
+    dpkg-query -W -f '${Package} ${db:Status-Abbrev}\n' | grep -E "^$1.* i" # nothing else prints
+}
+for so in libhaptel[0-9]*_*.deb; do so=${so#libhaptel} so=${so%%_*}; done
+lists 'libllvm|libglm|libtomlplusplus' && fail "the system is not bare"
+
+# Without the compiler: headers, library, and the command that compiles textures when the program is built.
+get "libhaptel$so" libhaptel-dev
+if cmake -S library -B alone >log 2>&1; then fail "textures would be compiled without the command"; fi
+grep -q HAPTEL_COMMAND log || { cat log; fail "it is not said that the command is missing"; }
+get haptel
+configure without_compiler
+[[ ! -e without_compiler/ball ]] || fail "there is a compiler"
+lists 'lib(glm|llvm-?[0-9]*|tomlplusplus|fmt|assimp|usb-[0-9.]*)-dev' && fail "headers of other libraries came along"
+apt-get -qq purge --yes haptel libhaptel-dev >log 2>&1 && apt-get -qq autoremove --purge --yes >log 2>&1 || { cat log; exit 1; }
+lists libllvm && fail "the runtime needs LLVM"
+[[ ! -e /usr/include/haptel && ! -e /usr/bin/haptel ]] || fail "purged packages leave files behind"
+say "own_loop, with libhaptel$so alone: $(dpkg-query -W -f '${Depends}' "libhaptel$so")"
+./without_compiler/own_loop
+ldd without_compiler/own_loop | grep -E 'haptel|LLVM|not found'
+! ldd without_compiler/own_loop | grep -E 'LLVM|not found' || fail "it needs LLVM"
+
+# With it, by CMake and by pkg-config.
+get "libhaptel-compiler$so" libhaptel-dev libhaptel-compiler-dev haptel haptel-materials haptel-udev python3-haptel
+for package in $(dpkg-query -W -f '${Package}\n' '*haptel*'); do
+    [[ -e /usr/share/doc/$package/copyright ]] || fail "$package has no licence"
+done
+configure with_compiler
+for program in "own_loop" "plain stone.haptel:stone" "ball stone.haptel:stone"; do
+    say "$program"
+    ./with_compiler/$program
+done
+say "pkg-config haptel-compiler $(pkg-config --modversion haptel-compiler): $(pkg-config --cflags --libs haptel-compiler)"
+# shellcheck disable=SC2046
+g++ -std=c++20 library/ball.cpp -o by_pkg_config $(pkg-config --cflags --libs haptel-compiler)
+./by_pkg_config stone.haptel:stone >/dev/null || fail "the program by pkg-config failed"
+
+say "python3 -c 'import haptel'"
+python3 python_test.py
+say "haptel, and a material by its name"
+haptel --version
+haptel list | cut -c-100
+haptel eval materials.wood.oak --at 1mm,2mm,0
+printf 'import materials.wood.oak;\ntexture two() { return 2.0 * oak(); }\n' >two.haptel
+haptel eval two.haptel:two --at 1mm,2mm,0
+[[ -e /usr/lib/udev/rules.d/60-haptel.rules ]] || fail "udev has no rules"
+
+say "apt-get purge"
+apt-get -qq purge --yes '*haptel*' >log 2>&1 || { cat log; exit 1; }
+left=$(find / -xdev -path /haptel -prune -o -path /root -prune -o -path /proc -prune -o -name '*haptel*' -print)
+[[ -z $left ]] || fail "left behind: $left"
+say "installed, used and taken away"
