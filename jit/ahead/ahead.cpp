@@ -71,15 +71,26 @@ private:
     }
 };
 
-} // namespace
-
-AheadResult build_object(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options)
+AheadResult build_code(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options,
+                       llvm::CodeGenFileType type)
 {
     Build build(textures, options);
     if (!build.error.empty()) return {{}, std::move(build.error)};
     CompileTimes unused;
-    Object object = make_object(*build.code, *build.machine, Effort::full, unused);
+    Object object = make_object(*build.code, *build.machine, Effort::full, unused, type);
     return {std::move(object.bytes), std::move(object.error)};
+}
+
+} // namespace
+
+AheadResult build_object(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options)
+{
+    return build_code(textures, options, llvm::CodeGenFileType::ObjectFile);
+}
+
+AheadResult build_assembler_text(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options)
+{
+    return build_code(textures, options, llvm::CodeGenFileType::AssemblyFile);
 }
 
 AheadResult build_llvm_text(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options)

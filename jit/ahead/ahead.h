@@ -30,6 +30,9 @@ AheadResult build_object(std::span<const emit_c::LibraryTexture> textures, const
 // The same before code is selected: LLVM's intermediate representation as text.
 AheadResult build_llvm_text(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options = {});
 
+// The same object as assembler's text.
+AheadResult build_assembler_text(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options = {});
+
 // A static library that holds this object under that name.
 AheadResult archive_of(const std::string& object, const std::string& name);
 

@@ -1,11 +1,11 @@
 // haptel fmt: that the style never changes what a text means, and what happens to files.
 #include "lang/compile.h"
 #include "lang/format/format.h"
+#include "lang/ir/print.h"
 #include "stdlib/stdlib.h"
 #include "tests/fuzz/random_source.h"
 #include "tests/support/catch.h"
 #include "tests/support/haptel_files.h"
-#include "tests/support/ir_print.h"
 #include "tests/support/project_path.h"
 #include "tests/support/tries.h"
 #include "tests/tools/commands/run_command.h"
