@@ -12,11 +12,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace haptel::jit {
 
 struct AheadOptions {
-    std::string isa = "baseline";            // as jit/codegen/isa.h names it, or aarch64
+    // As machine_with_isa() of jit/codegen/isa.h names them. Of several the largest that the processor has is chosen
+    // when the code is loaded; the least runs where none of the others fits.
+    std::vector<std::string> isas = {"baseline"};
     std::optional<Precision> precision = {}; // none: f64 for one point, mixed for many
 };
 

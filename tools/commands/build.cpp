@@ -1,5 +1,6 @@
 // haptel build: textures as code for programs that hold no compiler.
 #include "jit/ahead/ahead.h"
+#include "jit/codegen/isa.h"
 #include "jit/texture/facts.h"
 #include "lang/emit_c/header.h"
 #include "lang/emit_c/source.h"
@@ -23,7 +24,8 @@ namespace haptel::tools {
 namespace {
 
 struct BuildOptions {
-    std::string what, emit, out, isa, precision, depfile; // empty: not given
+    std::string what, emit, out, precision, depfile; // empty: not given
+    std::vector<std::string> isas;
     bool json = false;
 };
 
@@ -92,7 +94,7 @@ std::string library_name(const BuildOptions& options)
 jit::AheadOptions ahead_options(const BuildOptions& options)
 {
     jit::AheadOptions ahead;
-    if (!options.isa.empty()) ahead.isa = options.isa;
+    if (!options.isas.empty()) ahead.isas = options.isas;
     if (!options.precision.empty()) ahead.precision = precision_of(options.precision);
     return ahead;
 }
@@ -194,12 +196,14 @@ std::string misuse_of(const BuildOptions& options)
                            options.emit, why, kinds);
     };
     const Maker& maker = *maker_of(options.emit);
-    if (!options.isa.empty() && !maker.has_isa)
+    if (!options.isas.empty() && !maker.has_isa)
         return without_effect("--isa", "is the same for every processor", &Maker::has_isa);
     if (!options.precision.empty() && !maker.has_precision)
         return without_effect("--precision", "is the same for every precision", &Maker::has_precision);
     if (options.emit == "c" && options.precision == "mixed")
         return "--emit c is in f64 or f32 throughout: expected --precision f64 or f32, found mixed";
+    std::string error;
+    if (!jit::sets_in_order(options.isas, error)) return "--isa: " + error;
     return {};
 }
 
@@ -213,7 +217,7 @@ Json to_json(const Library& library, const BuildOptions& options, size_t bytes)
                             {"block_bytes", texture.texture->block_size},
                             {"operations_max", texture.facts.operations_max}});
     Json made{{"emit", options.emit}, {"out", options.out}};
-    if (maker_of(options.emit)->has_isa) made["isa"] = ahead_options(options).isa;
+    if (maker_of(options.emit)->has_isa) made["isa"] = ahead_options(options).isas;
     made.update({{"abi", int{HAPTEL_ABI_VERSION}}, {"bytes", bytes}, {"textures", std::move(textures)}});
     return made;
 }
@@ -261,8 +265,11 @@ Command build_command(CLI::App& app)
     command->add_option("--emit", options->emit, shows)->required()->check(CLI::IsMember(names));
     command->add_option("-o,--out", options->out, "File to write")->required()->type_name("PATH");
     command
-        ->add_option("--isa", options->isa,
-                     "The least processor that machine code runs on [baseline: any of this architecture]")
+        ->add_option("--isa", options->isas,
+                     "The least processor that machine code runs on [baseline: any of this architecture]; of several, "
+                     "by commas, the largest that the processor has is chosen at load")
+        ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::IsMember({"baseline", "avx2", "avx512", "aarch64"}));
     command
         ->add_option("--precision", options->precision,
@@ -274,7 +281,7 @@ Command build_command(CLI::App& app)
     command->add_flag("--json", options->json, "One JSON object on standard output: what was made");
     set_examples(*command, "  haptel build rock.haptel --emit static -o librock.a\n"
                            "  haptel build rock.haptel --emit header -o rock.h\n"
-                           "  haptel build textures --emit shared --isa avx2 -o libtextures.so\n"
+                           "  haptel build textures --emit shared --isa baseline,avx2,avx512 -o libtextures.so\n"
                            "  haptel build rock.haptel:rock --emit c --precision f32 -o rock.c");
     return {command, [options] { return build(*options); }};
 }

@@ -31,11 +31,6 @@ int main(void)
 }
 )";
 
-int shell(const std::string& command)
-{
-    return std::system(command.c_str());
-}
-
 std::string quoted_file(const Folder& folder, const std::string& name)
 {
     return "'" + folder.file(name) + "'";
