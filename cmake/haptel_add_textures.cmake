@@ -1,11 +1,12 @@
-# haptel_add_textures(TARGET FILE.haptel... [ISA baseline|avx2|avx512|aarch64] [PRECISION f64|mixed|f32] [EMIT object|c])
+# haptel_add_textures(TARGET FILE.haptel... [ISA baseline|avx2|avx512|aarch64...] [PRECISION f64|mixed|f32] [EMIT object|c])
 #
 # Compiles textures when the target is built, and makes them a part of it: the target includes "FILE.h" and calls what it
 # declares, without a compiler at run time. EMIT c makes C text in place of machine code, which the target's own compiler
-# then compiles: for processors that Haptel makes no code for. What a file imports counts as its source. The command is
-# that of this build, or else the one that is installed.
+# then compiles: for processors that Haptel makes no code for. Of several sets behind ISA the largest that the processor
+# has is chosen when the program is loaded. What a file imports counts as its source. The command is that of this build,
+# or else the one that is installed.
 function(haptel_add_textures target)
-    cmake_parse_arguments(ARG "" "ISA;PRECISION;EMIT" "" ${ARGN})
+    cmake_parse_arguments(ARG "" "PRECISION;EMIT" "ISA" ${ARGN})
     set(emit object)
     if(ARG_EMIT)
         set(emit ${ARG_EMIT})
@@ -24,7 +25,8 @@ function(haptel_add_textures target)
     endif()
     set(options)
     if(ARG_ISA)
-        list(APPEND options --isa ${ARG_ISA})
+        list(JOIN ARG_ISA "," isas)
+        list(APPEND options --isa ${isas})
     endif()
     if(ARG_PRECISION)
         list(APPEND options --precision ${ARG_PRECISION})

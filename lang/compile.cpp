@@ -5,6 +5,7 @@
 #include "lang/check/library.h"
 #include "lang/ir/verify.h"
 #include "lang/lower/lower.h"
+#include "lang/syntax/language_version.h"
 #include "lang/syntax/parser.h"
 #include "lang/text/limits.h"
 #include "lang/text/near_name.h"
@@ -58,9 +59,17 @@ struct Files {
         for (const PlacedToken& token : tokens.tokens)
             if (token.kind == Token::name) named.insert(sources.text({index, token.begin, token.end}));
         files.push_back({parse(sources, index, std::move(tokens), diagnostics), {}});
+        check_version(files.back().tree.language);
         names.push_back(sources.file(index).name);
         by_name.emplace(sources.file(index).name, index);
         return index;
+    }
+
+    void check_version(Span number)
+    {
+        if (number.begin == number.end) return;
+        const VersionFault fault = fault_of_version(sources.text(number));
+        if (!fault.message.empty()) diagnostics.error(number, "language-version", fault.message, fault.hint);
     }
 
     void import(uint32_t file, size_t which)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "input/toml/file_messages.h"
+#include "lang/abi/language.h"
 #include "libraries/version.h"
 
 #include <filesystem>
@@ -17,7 +18,6 @@ namespace haptel::libraries {
 
 inline constexpr const char* manifest_name = "library.toml";
 inline constexpr uint64_t schema_version = 1; // of library.toml
-inline constexpr uint64_t language_version = 1;
 inline constexpr std::size_t manifest_bytes_max = 256u << 10;
 Version haptel_version();
 
@@ -44,7 +44,7 @@ struct Manifest {
     std::vector<std::string> authors, tags;
     std::vector<TextureName> textures;
     Version haptel_least;
-    uint64_t language_least = 1;
+    uint64_t language_least = 1; // of its files that do not say
     std::vector<Dependency> dependencies;
     std::vector<PreviewSize> previews; // of those whose size is said
 };

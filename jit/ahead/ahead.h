@@ -12,11 +12,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace haptel::jit {
 
 struct AheadOptions {
-    std::string isa = "baseline";            // as jit/codegen/isa.h names it, or aarch64
+    // As machine_with_isa() of jit/codegen/isa.h names them. Of several the largest that the processor has is chosen
+    // when the code is loaded; the least runs where none of the others fits.
+    std::vector<std::string> isas = {"baseline"};
     std::optional<Precision> precision = {}; // none: f64 for one point, mixed for many
 };
 
@@ -29,6 +32,9 @@ AheadResult build_object(std::span<const emit_c::LibraryTexture> textures, const
 
 // The same before code is selected: LLVM's intermediate representation as text.
 AheadResult build_llvm_text(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options = {});
+
+// The same object as assembler's text.
+AheadResult build_assembler_text(std::span<const emit_c::LibraryTexture> textures, const AheadOptions& options = {});
 
 // A static library that holds this object under that name.
 AheadResult archive_of(const std::string& object, const std::string& name);

@@ -10,25 +10,23 @@ namespace {
 
 class TableWriter {
 public:
-    TableWriter(llvm::Module& to, const emit_c::LibraryTexture& from, std::span<const EntryPoint> compiled)
+    TableWriter(llvm::Module& to, const emit_c::LibraryTexture& from, const TableEntries& compiled)
         : module(to), of(from), texture(*from.texture), entries(compiled)
     {
     }
 
-    void write_texture()
+    llvm::GlobalVariable* write_texture()
     {
         const haptel_facts& facts = of.facts;
         llvm::Constant* const known =
             structure({real(facts.height_min_m), real(facts.height_max_m), real(facts.slope_max),
                        real(facts.curvature_max_per_m), word(facts.continuity), word(facts.operations_max)});
-        using enum EntryPoint::Kind;
         llvm::Constant* const table =
             structure({word(HAPTEL_ABI_VERSION), word(sizeof(haptel_texture)), word(texture.reads),
                        word(texture.writes), word(texture.block_size), word(texture.parameters.size()),
-                       string(texture.name), parameters(), known, entry(height, false), entry(height_gradient, false),
-                       entry(height, true), entry(height_gradient, true), choices()});
+                       string(texture.name), parameters(), known, entry(0), entry(1), entry(2), entry(3), choices()});
         static_assert(sizeof(haptel_texture) == 120, "what a table gains is written here, too");
-        global(table, emit_c::texture_symbol(texture));
+        return global(table, emit_c::texture_symbol(texture));
     }
 
     void write_defaults()
@@ -53,7 +51,7 @@ private:
     llvm::Module& module;
     const emit_c::LibraryTexture& of;
     const ir::Texture& texture;
-    const std::span<const EntryPoint> entries;
+    const TableEntries& entries;
 
     llvm::Constant* word(uint64_t value) const
     {
@@ -70,7 +68,7 @@ private:
         return llvm::ConstantStruct::getAnon(members);
     }
     // Seen from outside where it has a name.
-    llvm::Constant* global(llvm::Constant* value, const std::string& name = {}) const
+    llvm::GlobalVariable* global(llvm::Constant* value, const std::string& name = {}) const
     {
         auto* made = new llvm::GlobalVariable(
             module, value->getType(), true,
@@ -110,22 +108,33 @@ private:
         }
         return has_any ? array_or_null(by_parameter) : null();
     }
-    llvm::Constant* entry(EntryPoint::Kind kind, bool is_batch) const
+    llvm::Constant* entry(size_t place) const
     {
-        for (const EntryPoint& entry : entries)
-            if (entry.texture == &texture && entry.kind == kind && (entry.lanes == LaneForm::points) == is_batch)
-                return module.getFunction(symbol_of(entry));
+        if (entries[place]) return entries[place];
         return null();
     }
 };
 
 } // namespace
 
-void write_table(llvm::Module& module, const emit_c::LibraryTexture& texture, std::span<const EntryPoint> entries)
+TableEntries table_entries(const llvm::Module& module, const ir::Texture& texture, std::span<const EntryPoint> entries)
+{
+    TableEntries found{};
+    for (const EntryPoint& entry : entries)
+        if (entry.texture == &texture)
+            found[(entry.lanes == LaneForm::points ? 2 : 0) + (entry.kind == EntryPoint::Kind::height ? 0 : 1)] =
+                module.getFunction(symbol_of(entry));
+    return found;
+}
+
+llvm::GlobalVariable* write_table(llvm::Module& module, const emit_c::LibraryTexture& texture,
+                                  const TableEntries& entries, bool is_chosen_at_load)
 {
     TableWriter writer(module, texture, entries);
-    writer.write_texture();
     writer.write_defaults();
+    llvm::GlobalVariable* const table = writer.write_texture();
+    table->setConstant(!is_chosen_at_load);
+    return table;
 }
 
 } // namespace haptel::jit

@@ -33,6 +33,20 @@ std::vector<Isa> available(const llvm::TargetMachine& machine)
     return found;
 }
 
+// Null, and `error`, where there is none.
+const Isa* isa_for_others(std::string_view name, std::string& error)
+{
+    const llvm::Triple::ArchType host = llvm::Triple(llvm::sys::getProcessTriple()).getArch();
+    const auto fits = [&](const Isa& isa) {
+        return name == isa.name ? name != "baseline" || isa.architecture == host
+                                : name == "aarch64" && isa.architecture == llvm::Triple::aarch64;
+    };
+    if (const Isa* const found = std::ranges::find_if(known, fits); found != std::end(known)) return found;
+    error = "'" + std::string(name) +
+            "' is no instruction set that Haptel builds for: expected baseline, avx2, avx512 or aarch64";
+    return nullptr;
+}
+
 } // namespace
 
 std::string restrict_to_isa(llvm::orc::JITTargetMachineBuilder& host, std::string_view name)
@@ -54,20 +68,35 @@ std::string restrict_to_isa(llvm::orc::JITTargetMachineBuilder& host, std::strin
            "it has " + choices + "host";
 }
 
+std::optional<std::vector<std::string>> sets_in_order(std::span<const std::string> names, std::string& error)
+{
+    std::vector<std::pair<const Isa*, std::string>> sets;
+    for (const std::string& name : names) {
+        const Isa* const isa = isa_for_others(name, error);
+        if (!isa) return {};
+        for (const auto& [other, of_other] : sets) {
+            if (other == isa)
+                error = of_other == name ? "'" + name + "' is named twice"
+                                         : "'" + of_other + "' and '" + name + "' are the same set here";
+            else if (other->architecture != isa->architecture)
+                error = "'" + of_other + "' and '" + name +
+                        "' are of different architectures, and code of one does not run on the other: build a library "
+                        "for each";
+            if (!error.empty()) return {};
+        }
+        sets.emplace_back(isa, name);
+    }
+    std::ranges::sort(sets);
+    std::vector<std::string> in_order;
+    for (const auto& [isa, name] : sets) in_order.push_back(name);
+    return in_order;
+}
+
 std::optional<llvm::orc::JITTargetMachineBuilder> machine_with_isa(std::string_view name, std::string& error)
 {
+    const Isa* const found = isa_for_others(name, error);
+    if (!found) return {};
     const llvm::Triple host(llvm::sys::getProcessTriple());
-    const auto fits = [&](const Isa& isa) {
-        return name == isa.name ? name != "baseline" || isa.architecture == host.getArch()
-                                : name == "aarch64" && isa.architecture == llvm::Triple::aarch64;
-    };
-    const Isa* const found = std::ranges::find_if(known, fits);
-    if (found == std::end(known)) {
-        error = "'" + std::string(name) +
-                "' is no instruction set that Haptel builds for: expected baseline, avx2, "
-                "avx512 or aarch64";
-        return {};
-    }
     llvm::Triple triple = host;
     if (found->architecture != host.getArch())
         triple = llvm::Triple(llvm::Triple::getArchTypeName(found->architecture), "unknown", "linux", "gnu");

@@ -11,8 +11,10 @@
 #include "jit/codegen/codegen.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace llvm {
 class TargetMachine;
@@ -29,6 +31,10 @@ std::string restrict_to_isa(llvm::orc::JITTargetMachineBuilder& host, std::strin
 // A machine that has the named set and nothing beyond it, for programs that run elsewhere: one of the sets above, or
 // aarch64, the least of that architecture. Nothing, and `error` says why and what there is.
 std::optional<llvm::orc::JITTargetMachineBuilder> machine_with_isa(std::string_view name, std::string& error);
+
+// The sets of one library, from the least to the largest. Nothing, and `error`, where one is unknown or named twice, or
+// they belong to different architectures.
+std::optional<std::vector<std::string>> sets_in_order(std::span<const std::string> names, std::string& error);
 
 // What generated code may use and should be like on such a machine.
 Processor processor_of(const llvm::TargetMachine& machine);

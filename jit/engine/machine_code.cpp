@@ -70,7 +70,8 @@ void optimise(llvm::Module& module, llvm::TargetMachine& machine, Effort effort)
 
 } // namespace
 
-Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort, CompileTimes& times)
+Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort, CompileTimes& times,
+                   llvm::CodeGenFileType type)
 {
     Stopwatch stopwatch;
     module.setDataLayout(machine.createDataLayout());
@@ -86,8 +87,8 @@ Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort ef
     llvm::SmallVector<char, 0> object;
     llvm::raw_svector_ostream stream(object);
     llvm::legacy::PassManager passes;
-    if (machine.addPassesToEmitFile(passes, stream, nullptr, llvm::CodeGenFileType::ObjectFile))
-        return {{}, "the code generator cannot write object files for " + machine.getTargetTriple().str()};
+    if (machine.addPassesToEmitFile(passes, stream, nullptr, type))
+        return {{}, "the code generator cannot write code for " + machine.getTargetTriple().str()};
     passes.run(module);
     times.select_s += stopwatch.lap_s();
     return {{object.begin(), object.end()}, {}, effort};

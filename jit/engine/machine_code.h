@@ -36,8 +36,9 @@ struct Object {
     Effort effort = Effort::quick; // what went into it, at least what was asked for
 };
 
-// Verifies, optimises and selects; adds what that took to `times`.
-Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort, CompileTimes& times);
+// Verifies, optimises and selects; adds what that took to `times`. `type`: assembler's text instead.
+Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort, CompileTimes& times,
+                   llvm::CodeGenFileType type = llvm::CodeGenFileType::ObjectFile);
 
 // The code generators of this processor. One serves one thread at a time; it is made when all there are serve another.
 class Compilers {

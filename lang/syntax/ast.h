@@ -315,6 +315,7 @@ struct Import {
 };
 
 struct File {
+    Span language; // the number in "language 1;"; empty: the file does not say
     std::vector<Import> imports;
     std::vector<Struct> structs;
     std::vector<Constant> constants;

@@ -33,6 +33,7 @@ public:
 private:
     // parser.cpp
     void begin_declaration();
+    void language_line(ast::File& result);
     bool top_level_name(ast::File& result);
     void report_stray(ast::File& result);
     void find_top_level(bool strayed);

@@ -19,7 +19,7 @@ File parse(const SourceSet& sources, uint32_t file, TokenList tokens, Diagnostic
     return Grammar(sources, file, std::move(tokens), diagnostics).parse_file();
 }
 
-// file = {import | constants | struct | texture | function | macro | ";"}
+// file = [language] {import | constants | struct | texture | function | macro | ";"}
 File Grammar::parse_file()
 {
     File result;
@@ -41,7 +41,9 @@ File Grammar::parse_file()
         if (accept(Token::semicolon) || skip_precision()) continue;
         bool strayed = false;
         skip_foreign_qualifiers();
-        if (at(Token::define)) {
+        if (text() == "language" && kind(1) == Token::number) { // elsewhere it is a name like any other
+            language_line(result);
+        } else if (at(Token::define)) {
             definition();
         } else if (at(Token::kw_import)) {
             import_declaration(result);
@@ -82,6 +84,18 @@ void Grammar::begin_declaration()
     unread.clear();
     is_head_damaged = is_misshapen = has_stray_brace = false;
     depth = Nesting::bracket;
+}
+
+// language = "language" number ";"       first of all; which number it may be is asked where the text is compiled
+void Grammar::language_line(File& result)
+{
+    if (position > 0)
+        slip(span(), "language-version", "the version of the language stands before all else in a file",
+             "make it the first line");
+    advance();
+    result.language = span();
+    advance();
+    expect_semicolon("the version of the language");
 }
 
 // Statements outside of any body: a '}' too many above, or a slip.

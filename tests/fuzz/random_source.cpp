@@ -469,7 +469,7 @@ private:
 
 std::string random_source(uint64_t seed)
 {
-    return Writer(seed, false).program();
+    return (seed % 8 == 2 ? "language 1;\n" : "") + Writer(seed, false).program();
 }
 
 std::string odd_source(uint64_t seed)

@@ -2,6 +2,7 @@
 #include "lang/analyse.h"
 #include "lang/format/format.h"
 #include "lang/ir/cost.h"
+#include "lang/ir/print.h"
 #include "lang/ir/run/interpret.h"
 #include "lang/ir/verify.h"
 #include "lang/syntax/parser.h"
@@ -12,7 +13,6 @@
 #include "tests/lang/ir/ir_random.h"
 #include "tests/support/interpret.h"
 #include "tests/support/ir_parse.h"
-#include "tests/support/ir_print.h"
 #include "tests/support/project_path.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // The library beside a program: who sees it, what of it is read, and who shares it.
 #include "lang/check/library.h"
 #include "lang/compile.h"
+#include "lang/ir/print.h"
 #include "tests/support/catch.h"
-#include "tests/support/ir_print.h"
 
 #include <algorithm>
 #include <atomic>

@@ -2,11 +2,11 @@
 #include "jit/check/check_gradient.h"
 #include "jit/texture/texture.h"
 #include "lang/check/library.h"
+#include "lang/ir/print.h"
 #include "lang/syntax/parser.h"
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
 #include "tests/support/haptel_files.h"
-#include "tests/support/ir_print.h"
 #include "tests/support/project_path.h"
 
 #include <filesystem>

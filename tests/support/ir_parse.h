@@ -23,7 +23,7 @@
 #pragma once
 
 #include "lang/ir/ir.h"
-#include "tests/support/ir_print.h"
+#include "lang/ir/print.h"
 
 #include <optional>
 #include <string>

@@ -1,9 +1,11 @@
 // haptel build: textures as code for programs that hold no compiler.
 #include "jit/ahead/ahead.h"
+#include "jit/codegen/isa.h"
 #include "jit/texture/facts.h"
 #include "lang/emit_c/header.h"
 #include "lang/emit_c/source.h"
 #include "lang/emit_glsl/source.h"
+#include "lang/ir/print.h"
 #include "tools/arguments/precisions.h"
 #include "tools/arguments/texture_files.h"
 #include "tools/commands/build_shared.h"
@@ -23,7 +25,8 @@ namespace haptel::tools {
 namespace {
 
 struct BuildOptions {
-    std::string what, emit, out, isa = "baseline", precision, depfile;
+    std::string what, emit, out, precision, depfile; // empty: not given
+    std::vector<std::string> isas;
     bool json = false;
 };
 
@@ -75,10 +78,11 @@ Library library_of(const std::string& what)
     return library;
 }
 
-// What each kind of output is made of.
+// What each kind of output is made of, and which options change it.
 struct Maker {
     const char *name, *shows;
     jit::AheadResult (*make)(const Library&, const BuildOptions&);
+    bool has_isa, has_precision;
 };
 
 // "brushed" of "out/libbrushed.so".
@@ -90,8 +94,10 @@ std::string library_name(const BuildOptions& options)
 
 jit::AheadOptions ahead_options(const BuildOptions& options)
 {
-    if (options.precision.empty()) return {options.isa, {}};
-    return {options.isa, precision_of(options.precision)};
+    jit::AheadOptions ahead;
+    if (!options.isas.empty()) ahead.isas = options.isas;
+    if (!options.precision.empty()) ahead.precision = precision_of(options.precision);
+    return ahead;
 }
 
 jit::AheadResult make_object(const Library& library, const BuildOptions& options)
@@ -123,6 +129,19 @@ jit::AheadResult make_llvm(const Library& library, const BuildOptions& options)
     return jit::build_llvm_text(library.textures, ahead_options(options));
 }
 
+jit::AheadResult make_assembler(const Library& library, const BuildOptions& options)
+{
+    return jit::build_assembler_text(library.textures, ahead_options(options));
+}
+
+jit::AheadResult make_ir(const Library& library, const BuildOptions&)
+{
+    jit::AheadResult result;
+    for (const std::shared_ptr<const lang::Program>& program : library.programs)
+        result.bytes += ir::print(program->module);
+    return result;
+}
+
 jit::AheadResult make_c(const Library& library, const BuildOptions& options)
 {
     return {emit_c::source(library_name(options), library.textures, options.precision == "f32"), {}};
@@ -134,13 +153,15 @@ jit::AheadResult make_glsl(const Library& library, const BuildOptions& options)
 }
 
 constexpr Maker makers[] = {
-    {"object", "machine code, to link into a program", make_object},
-    {"static", "the same as a static library, libNAME.a", make_static},
-    {"shared", "the same as a shared library, libNAME.so; linked by cc", make_shared_library},
-    {"header", "the C header for any of them, and for c", make_header},
-    {"c", "C99 text, complete by itself, for any processor", make_c},
-    {"glsl", "functions of GLSL, to draw what is felt: for WebGL 2 and OpenGL 3.3, and later", make_glsl},
-    {"llvm", "LLVM's intermediate representation as text", make_llvm},
+    {"object", "machine code, to link into a program", make_object, true, true},
+    {"static", "the same as a static library, libNAME.a", make_static, true, true},
+    {"shared", "the same as a shared library, libNAME.so; linked by cc", make_shared_library, true, true},
+    {"header", "the C header for any of them, and for c", make_header, false, false},
+    {"c", "C99 text, complete by itself, for any processor", make_c, false, true},
+    {"glsl", "functions of GLSL, to draw what is felt: for WebGL 2 and OpenGL 3.3, and later", make_glsl, false, false},
+    {"asm", "the machine code as assembler's text", make_assembler, true, true},
+    {"llvm", "LLVM's intermediate representation as text, optimised", make_llvm, true, true},
+    {"ir", "Haptel's own intermediate representation as text, with exact derivatives", make_ir, false, false},
 };
 
 const Maker* maker_of(const std::string& name)
@@ -171,6 +192,28 @@ std::string write_output(const std::string& path, std::string_view bytes)
     return why.empty() ? "" : fmt::format("{} could not be written: {}", path, why);
 }
 
+// Empty, or what of the command line would change nothing.
+std::string misuse_of(const BuildOptions& options)
+{
+    const auto without_effect = [&](const char* option, const char* why, bool Maker::* has) {
+        std::string kinds;
+        for (const Maker& maker : makers)
+            if (maker.*has) kinds += (kinds.empty() ? "" : ", ") + std::string(maker.name);
+        return fmt::format("{} changes nothing of --emit {}, which {}: leave it out, or emit one of {}", option,
+                           options.emit, why, kinds);
+    };
+    const Maker& maker = *maker_of(options.emit);
+    if (!options.isas.empty() && !maker.has_isa)
+        return without_effect("--isa", "is the same for every processor", &Maker::has_isa);
+    if (!options.precision.empty() && !maker.has_precision)
+        return without_effect("--precision", "is the same for every precision", &Maker::has_precision);
+    if (options.emit == "c" && options.precision == "mixed")
+        return "--emit c is in f64 or f32 throughout: expected --precision f64 or f32, found mixed";
+    std::string error;
+    if (!jit::sets_in_order(options.isas, error)) return "--isa: " + error;
+    return {};
+}
+
 Json to_json(const Library& library, const BuildOptions& options, size_t bytes)
 {
     Json textures = Json::array();
@@ -180,14 +223,16 @@ Json to_json(const Library& library, const BuildOptions& options, size_t bytes)
                             {"symbol", emit_c::texture_symbol(*texture.texture)},
                             {"block_bytes", texture.texture->block_size},
                             {"operations_max", texture.facts.operations_max}});
-    return {{"emit", options.emit},           {"out", options.out}, {"isa", options.isa},
-            {"abi", int{HAPTEL_ABI_VERSION}}, {"bytes", bytes},     {"textures", std::move(textures)}};
+    Json made{{"emit", options.emit}, {"out", options.out}};
+    if (maker_of(options.emit)->has_isa) made["isa"] = ahead_options(options).isas;
+    made.update({{"abi", int{HAPTEL_ABI_VERSION}}, {"bytes", bytes}, {"textures", std::move(textures)}});
+    return made;
 }
 
 ExitCode build(const BuildOptions& options)
 {
-    if (options.emit == "c" && options.precision == "mixed") {
-        say_error("--emit c is in f64 or f32 throughout: expected --precision f64 or f32, found mixed");
+    if (const std::string misuse = misuse_of(options); !misuse.empty()) {
+        say_error(misuse);
         return ExitCode::misuse;
     }
     if (const std::string why = why_not_written(options.out); !why.empty()) {
@@ -227,10 +272,12 @@ Command build_command(CLI::App& app)
     command->add_option("--emit", options->emit, shows)->required()->check(CLI::IsMember(names));
     command->add_option("-o,--out", options->out, "File to write")->required()->type_name("PATH");
     command
-        ->add_option("--isa", options->isa,
-                     "The least processor that the code runs on; baseline: any of this architecture")
-        ->check(CLI::IsMember({"baseline", "avx2", "avx512", "aarch64"}))
-        ->capture_default_str();
+        ->add_option("--isa", options->isas,
+                     "The least processor that machine code runs on [baseline: any of this architecture]; of several, "
+                     "by commas, the largest that the processor has is chosen at load")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"baseline", "avx2", "avx512", "aarch64"}));
     command
         ->add_option("--precision", options->precision,
                      "Of the code: f64, mixed or f32 [f64 for one point, mixed for many; c: f64]")
@@ -241,7 +288,7 @@ Command build_command(CLI::App& app)
     command->add_flag("--json", options->json, "One JSON object on standard output: what was made");
     set_examples(*command, "  haptel build rock.haptel --emit static -o librock.a\n"
                            "  haptel build rock.haptel --emit header -o rock.h\n"
-                           "  haptel build textures --emit shared --isa avx2 -o libtextures.so\n"
+                           "  haptel build textures --emit shared --isa baseline,avx2,avx512 -o libtextures.so\n"
                            "  haptel build rock.haptel:rock --emit c --precision f32 -o rock.c");
     return {command, [options] { return build(*options); }};
 }

@@ -1,9 +1,9 @@
 // Code gives the interpreter's bits: every operation over special values, and whole random programs.
 #include "lang/ir/op_info.h"
+#include "lang/ir/print.h"
 #include "tests/jit/codegen/engines.h"
 #include "tests/jit/codegen/parsed.h"
 #include "tests/jit/codegen/random_program.h"
-#include "tests/support/ir_print.h"
 
 #include <limits>
 #include <random>

@@ -1,9 +1,9 @@
+#include "lang/ir/print.h"
 #include "lang/ir/run/interpret.h"
 #include "lang/ir/verify.h"
 #include "tests/support/catch.h"
 #include "tests/support/interpret.h"
 #include "tests/support/ir_parse.h"
-#include "tests/support/ir_print.h"
 
 #include <string>
 

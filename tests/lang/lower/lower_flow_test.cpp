@@ -1,11 +1,11 @@
 // What branches, loops and calls mean.
 #include "lang/check/check.h"
 #include "lang/compile.h"
+#include "lang/ir/print.h"
 #include "lang/lower/lower.h"
 #include "lang/syntax/parser.h"
 #include "tests/lang/lower/evaluation.h"
 #include "tests/support/catch.h"
-#include "tests/support/ir_print.h"
 
 using namespace haptel::lang::test;
 

@@ -1,5 +1,6 @@
 // haptel build: what it writes is code that runs without Haptel, and what it refuses it says.
 #include "tests/support/catch.h"
+#include "tests/support/ir_parse.h"
 #include "tests/tools/commands/run_command.h"
 
 #include <fstream>
@@ -31,11 +32,6 @@ int main(void)
 }
 )";
 
-int shell(const std::string& command)
-{
-    return std::system(command.c_str());
-}
-
 std::string quoted_file(const Folder& folder, const std::string& name)
 {
     return "'" + folder.file(name) + "'";
@@ -55,8 +51,11 @@ TEST_CASE("a C program gets of each kind of output what haptel eval says, and li
     struct Kind {
         const char *emit, *file;
     };
-    for (const Kind& kind :
-         {Kind{"object", "ripples.o"}, {"static", "libripples.a"}, {"shared", "libripples.so"}, {"c", "ripples.c"}}) {
+    for (const Kind& kind : {Kind{"object", "ripples.o"},
+                             {"static", "libripples.a"},
+                             {"shared", "libripples.so"},
+                             {"c", "ripples.c"},
+                             {"asm", "ripples.s"}}) {
         CAPTURE(kind.emit);
         const Ran built = run_command("build '" + file + "' --emit " + kind.emit + " -o " +
                                       quoted_file(folder, kind.file) + " --json");
@@ -100,6 +99,43 @@ TEST_CASE("a shader gets a texture under the name of its file")
                                  "haptel_height_gradient_ripples("})
         CHECK(text.find(declared) != std::string::npos);
     CHECK(text.find("#version") == std::string::npos); // it is the shader's
+}
+
+TEST_CASE("the intermediate representation of a texture reads back as itself, and shows its derivatives")
+{
+    const Folder folder;
+    const std::string file = folder.write("ripples.haptel", ripples);
+    const std::string out = folder.file("ripples.ir");
+    REQUIRE(run_command("build '" + file + "' --emit ir -o '" + out + "'").code == 0);
+    const std::string text = read_file(out);
+    CHECK(contains(text, "texture \"ripples\" {"));
+    CHECK(contains(text, "  height_gradient \""));
+    const auto module = haptel::ir::parse(text);
+    REQUIRE(module.module);
+    CHECK(haptel::ir::print(*module.module) == text);
+}
+
+TEST_CASE("an option that would change nothing of what is emitted is refused, with what it changes")
+{
+    const Folder folder;
+    const std::string file = folder.write("ripples.haptel", ripples), out = folder.file("out");
+    const auto refused = [&](const std::string& options) {
+        const Ran ran = run_command("build '" + file + "' -o '" + out + "' --emit " + options);
+        CHECK(ran.code == 2);
+        CHECK_FALSE(std::filesystem::exists(out));
+        return ran.err;
+    };
+    for (const char* emit : {"header", "c", "ir"}) {
+        CAPTURE(emit);
+        const std::string said = refused(emit + std::string(" --isa baseline"));
+        CHECK(contains(said, "--isa changes nothing of --emit " + std::string(emit)));
+        CHECK(contains(said, "leave it out, or emit one of object, static, shared, asm, llvm"));
+    }
+    for (const char* emit : {"header", "ir"})
+        CHECK(contains(refused(emit + std::string(" --precision f32")), "emit one of object, static, shared, c, asm"));
+    const Ran header = run_command("build '" + file + "' -o '" + out + "' --emit header --json");
+    REQUIRE(header.code == 0);
+    CHECK_FALSE(nlohmann::json::parse(header.out).contains("isa"));
 }
 
 TEST_CASE("a folder becomes one library, and FILE:NAME one texture of it")

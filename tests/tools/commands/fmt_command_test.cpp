@@ -1,11 +1,11 @@
 // haptel fmt: that the style never changes what a text means, and what happens to files.
 #include "lang/compile.h"
 #include "lang/format/format.h"
+#include "lang/ir/print.h"
 #include "stdlib/stdlib.h"
 #include "tests/fuzz/random_source.h"
 #include "tests/support/catch.h"
 #include "tests/support/haptel_files.h"
-#include "tests/support/ir_print.h"
 #include "tests/support/project_path.h"
 #include "tests/support/tries.h"
 #include "tests/tools/commands/run_command.h"
@@ -95,6 +95,30 @@ TEST_CASE("fmt: replaces a file, keeps its permissions, and says so; a second ti
     CHECK(second.code == 0);
     CHECK(second.err.empty());
     CHECK(run_command("fmt --check '" + file + "'").code == 0);
+}
+
+TEST_CASE(
+    "fmt: --upgrade writes the version, and refuses a text of a version to come, which the file or its library names")
+{
+    const Folder folder;
+    const std::string file = folder.write("a.haptel", "/// Flat.\ntexture t(){return 1mm;}");
+    CHECK(run_command("fmt --upgrade --check '" + file + "'").code == 1);
+    CHECK(run_command("fmt --upgrade '" + file + "'").code == 0);
+    const std::string with_version = "language 1;\n\n/// Flat.\ntexture t()\n{\n    return 1mm;\n}\n";
+    CHECK(read_file(file) == with_version);
+    CHECK(run_command("fmt --upgrade --check '" + file + "'").code == 0);
+    CHECK(run_command("check --strict '" + file + "'").code == 0);
+
+    const std::string later = folder.write("later.haptel", "language 9;\ntexture t() { return 1mm; }\n");
+    const Ran refused = run_command("fmt --upgrade '" + later + "'");
+    CHECK(refused.code == 1);
+    CHECK(contains(refused.err, "later.haptel:1:10: error: this file is written in version 9 of the language"));
+    folder.write("library.toml",
+                 "schema = 1\nname = \"wood\"\nversion = \"1.0.0\"\ntagline = \"T\"\nauthors = [\"A\"]\n"
+                 "license = \"MIT\"\ntextures = [\"a:t\"]\nhaptel = \"0.1\"\nlanguage = 8\n");
+    const std::string silent = folder.write("silent.haptel", "texture t() { return 1mm; }\n");
+    CHECK(contains(run_command("fmt --upgrade '" + silent + "'").err, "written in version 8 of the language"));
+    CHECK(run_command("fmt --upgrade --check '" + file + "'").code == 0); // which says its own
 }
 
 TEST_CASE("fmt: --stdout prints and leaves the file alone")

@@ -3,6 +3,7 @@
 
 #include "tests/support/folder.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -23,6 +24,11 @@ struct Ran {
 
 // `arguments` as in a shell: quote what needs it. `before` stands in front of the command: "timeout 5".
 Ran run_command(const std::string& arguments, const std::string& before = "");
+
+inline int shell(const std::string& command)
+{
+    return std::system(command.c_str());
+}
 
 inline bool contains(const std::string& text, const std::string& part)
 {

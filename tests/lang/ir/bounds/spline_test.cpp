@@ -3,12 +3,12 @@
 #include "lang/ir/bounds/spline_image.h"
 #include "lang/ir/builder.h"
 #include "lang/ir/derive/differentiate.h"
+#include "lang/ir/print.h"
 #include "lang/ir/run/interpret.h"
 #include "lang/ir/verify.h"
 #include "lang/math/quad.h"
 #include "tests/support/catch.h"
 #include "tests/support/ir_parse.h"
-#include "tests/support/ir_print.h"
 
 #include <cmath>
 #include <limits>

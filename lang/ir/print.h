@@ -1,4 +1,4 @@
-// Text form of the IR, for tests: equal text means an equal module.
+// The IR as text: equal texts, equal modules. `haptel build --emit ir` shows it to people, and tests read it back.
 #pragma once
 
 #include "lang/ir/ir.h"

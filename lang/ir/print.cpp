@@ -1,4 +1,4 @@
-#include "tests/support/ir_print.h"
+#include "lang/ir/print.h"
 #include "lang/ir/op_info.h"
 
 #include <bit>
