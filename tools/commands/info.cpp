@@ -6,6 +6,7 @@
 #include "lang/text/near_name.h"
 #include "stdlib/stdlib.h"
 #include "tools/commands/command.h"
+#include "tools/commands/info_library.h"
 #include "tools/commands/reference.h"
 #include "tools/output/terminal.h"
 #include "tools/report/check_report.h"
@@ -193,17 +194,24 @@ Command info_command(CLI::App& app)
 {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App* command = app.add_subcommand(
-        "info", "Explain a function or list a file's textures; without an argument list all functions");
-    command->add_option("what", options->what, "A function, or a texture file; without it all functions are listed")
-        ->type_name("NAME|FILE[:TEXTURE]");
+        "info", "Explain a function, or list a file's or a library's textures; without an argument list all functions");
+    command
+        ->add_option("what", options->what,
+                     "A function, a texture file, or a library: its archive, folder or name; "
+                     "without it all functions are listed")
+        ->type_name("NAME|FILE[:TEXTURE]|LIBRARY");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     command->add_flag("--markdown", options->markdown, "The reference of all functions as a page");
     set_examples(*command, "  haptel info\n"
                            "  haptel info fbm\n"
                            "  haptel info examples/textures/rock.haptel\n"
-                           "  haptel info rock.haptel:rock --json");
+                           "  haptel info rock.haptel:rock --json\n"
+                           "  haptel info wood-1.2.0.haptlib");
     return {command, [options] {
                 if (options->what.empty() || options->markdown) return show_all(*options);
+                const std::vector<Entry> functions = reference();
+                const bool is_function = std::ranges::find(functions, options->what, &Entry::name) != functions.end();
+                if (!is_function && names_library(options->what)) return show_library(options->what, options->json);
                 return is_file(options->what) ? show_file(*options) : show_entry(*options);
             }};
 }

@@ -304,3 +304,27 @@ TEST_CASE("test tries the tests of a library as pack does: they are flat where w
         ": tested.board() - 1mm; }\n");
     CHECK(root.run("test wood").code == 0);
 }
+
+TEST_CASE("info tells what a library says of itself: of its folder, its archive, and where it is installed")
+{
+    const LibraryRoot root;
+    write_library(root, "wood", "wood", "1.2.0", "2.0");
+    REQUIRE(root.run("pack wood").code == 0);
+    REQUIRE(root.run("install wood-1.2.0.haptlib").code == 0);
+    for (const char* what : {"./wood", "wood-1.2.0.haptlib"}) {
+        CAPTURE(what);
+        const Json said = root.json("info " + std::string(what));
+        CHECK(said["name"] == "wood");
+        CHECK(said["version"] == "1.2.0");
+        CHECK(said["language"] == 1);
+        REQUIRE(said["textures"].size() == 1);
+        CHECK(said["textures"][0]["name"] == "oak:board");
+        CHECK(said["textures"][0]["tagline"] != "");
+    }
+    CHECK(root.run("info wood", "wood/tests").out == root.run("info ./wood").out); // the installed one
+    CHECK(contains(root.run("info ./wood").out, "wood 1.2.0"));
+    CHECK(contains(root.run("info fbm").out, "fbm")); // functions keep their names
+    const Ran absent = root.run("info none.haptlib");
+    CHECK(absent.code == 1);
+    CHECK(contains(absent.err, "none.haptlib"));
+}
