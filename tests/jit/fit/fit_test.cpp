@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <random>
+#include <span>
 #include <sstream>
 
 using namespace haptel;
@@ -29,12 +30,43 @@ constexpr Case examples[] = {{"brushed", "brushed", 10},     {"cast", "cast", 20
                              {"weathered", "boards", 30},    {"weathered", "weathered", 30},
                              {"weave", "weave", 20},         {"wood", "wood", 30}};
 
-void find_hidden(uint64_t seed)
+// Of the library of materials.
+constexpr Case materials[] = {{"fabric/aida", "aida", 15},
+                              {"fabric/burlap", "burlap", 20},
+                              {"fabric/corduroy", "corduroy", 20},
+                              {"fabric/denim", "denim", 6},
+                              {"fabric/jersey", "jersey", 20},
+                              {"food/orange", "orange", 15},
+                              {"food/waffle", "waffle", 80},
+                              {"leather/calf", "calf", 10},
+                              {"leather/pebbled", "pebbled", 20},
+                              {"metal/brushed", "brushed", 10},
+                              {"metal/cast", "cast", 30},
+                              {"metal/knurl", "knurl", 10},
+                              {"metal/milled", "milled", 12},
+                              {"metal/perforated", "perforated", 60},
+                              {"metal/turned", "turned", 6},
+                              {"paper/laid", "laid", 40},
+                              {"perception/dots", "dots", 30},
+                              {"perception/jvp_dome", "jvp_dome", 20},
+                              {"perception/metal_grating", "metal_grating", 10},
+                              {"perception/sine_grating", "sine_grating", 60},
+                              {"plastic/layers", "layers", 4},
+                              {"plastic/lenticular", "lenticular", 6},
+                              {"plastic/studs", "studs", 60},
+                              {"stone/granite", "granite", 30},
+                              {"stone/gravel", "gravel", 40},
+                              {"stone/sandstone", "sandstone", 8},
+                              {"wood/cork", "cork", 30},
+                              {"wood/oak", "oak", 20},
+                              {"wood/planed", "planed", 30},
+                              {"wood/spruce", "spruce", 25}};
+
+void find_hidden(const std::string& folder, std::span<const Case> cases, uint64_t seed)
 {
-    for (std::size_t i = 0; i < std::size(examples); i += test::is_sanitized ? 5 : 1) {
-        const Case& each = examples[i];
-        const CompiledTextures compiled =
-            compiled_for_fit(test::project_path(std::string("examples/textures/") + each.file + ".haptel"));
+    for (std::size_t i = 0; i < cases.size(); i += test::is_sanitized ? 5 : 1) {
+        const Case& each = cases[i];
+        const CompiledTextures compiled = compiled_for_fit(test::project_path(folder + each.file + ".haptel"));
         REQUIRE(compiled.program);
         const Hidden hidden = hidden_texture(compiled.program, each.texture, each.side_mm * 1e-3, 160, seed);
         FitRequest request;
@@ -54,12 +86,17 @@ void find_hidden(uint64_t seed)
 
 TEST_CASE("hidden parameters of the examples come back within 1 %, or what cannot be told apart is named")
 {
-    find_hidden(2);
+    find_hidden("examples/textures/", examples, 2);
+}
+
+TEST_CASE("hidden parameters of materials come back within 1 %, or what cannot be told apart is named")
+{
+    find_hidden("materials/", materials, 2);
 }
 
 TEST_CASE("the same of other hidden parameters", "[.long]")
 {
-    for (const uint64_t seed : {1, 3, 4, 5, 6}) find_hidden(seed);
+    for (const uint64_t seed : {1, 3, 4, 5, 6}) find_hidden("examples/textures/", examples, seed);
 }
 
 TEST_CASE("what cannot be told apart is named: a phase, a factor of a factor, what has no effect")
