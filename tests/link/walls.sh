@@ -19,7 +19,7 @@ houses=(
     'api/compiler: . | include/haptel api jit lang/abi'
     'tools: output arguments plot sound report library control commands . | input libraries lang stdlib jit runtime device bench'
     'tests/api: . | tests/support examples/chai3d'
-    'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
+    'tests/lang: . | tests/support tests/conformance/case.h tests/fuzz/random_source.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
     'tests/runtime: . | tests/support input/toml runtime lang/abi'
 )
 

@@ -3,9 +3,11 @@
 #include "lang/emit_glsl/image_words.h"
 #include "lang/emit_glsl/names.h"
 #include "lang/emit_glsl/source.h"
+#include "tests/fuzz/random_source.h"
 #include "tests/lang/emit_glsl/square.h"
 #include "tests/support/ball.h"
 #include "tests/support/haptel_files.h"
+#include "tests/support/tries.h"
 
 using namespace haptel;
 using namespace haptel::test;
@@ -58,26 +60,23 @@ std::vector<const ir::Texture*> pointers_to(const std::vector<ir::Texture>& text
     return all;
 }
 
-} // namespace
-
-TEST_CASE("in Mesa a texture's GLSL gives what rounding to f32 can lead to")
-{
-    const ShaderContext context;
-    size_t samples = 0, undecided = 0, numbers = 0, loose = 0;
-    for (const auto& file : all_textures()) {
-        const auto program = program_of(file, text_of(file));
-        const std::string text = emit_glsl::source("textures", textures_of(*program));
-        ir::Interpreter<Ball> interpreter(program->module);
-        const std::vector<const ir::Texture*> textures = pointers_to(program->module.textures);
+// Of all textures of a program in Mesa, by each version in turns: numbers that rounding cannot lead to are failures.
+class Comparison {
+public:
+    void add(const lang::Program& program)
+    {
+        const std::string text = emit_glsl::source("textures", textures_of(program));
+        ir::Interpreter<Ball> interpreter(program.module);
+        const std::vector<const ir::Texture*> textures = pointers_to(program.module.textures);
         const std::vector<std::string> names = emit_glsl::texture_names(textures);
         for (size_t index = 0; index < textures.size(); ++index) {
             const ir::Texture& texture = *textures[index];
-            CAPTURE(file, texture.name);
+            CAPTURE(texture.name);
             FloatStimuli stimuli(7);
             const Square square(stimuli, 3);
             std::vector<uint32_t> words;
             const int32_t image = emit_glsl::append_image(words, stimuli.picture());
-            const char* const version = versions[samples / square.points.size() / 2 % std::size(versions)]; // in turns
+            const char* const version = versions[count++ % std::size(versions)];
             const std::unique_ptr<Shader> shader = square.shader(version, text, names[index]);
             shader->set_words("haptel_images", 16, words);
             for (const bool is_default : {true, false}) {
@@ -100,10 +99,47 @@ TEST_CASE("in Mesa a texture's GLSL gives what rounding to f32 can lead to")
             }
         }
     }
-    WARN(context.renderer() << ": of " << samples << " samples rounding decides " << undecided << "; of " << numbers
-                            << " numbers it may change " << loose << " by a thousandth or more");
-    CHECK(undecided < samples / 4);
-    CHECK(loose < numbers / 4);
+    // How much the comparison says.
+    void tell() const
+    {
+        WARN(context.renderer() << ": of " << samples << " samples rounding decides " << undecided << "; of " << numbers
+                                << " numbers it may change " << loose << " by a thousandth or more");
+    }
+
+    size_t count = 0, samples = 0, undecided = 0, numbers = 0, loose = 0;
+
+private:
+    const ShaderContext context;
+};
+
+} // namespace
+
+TEST_CASE("in Mesa a texture's GLSL gives what rounding to f32 can lead to")
+{
+    Comparison comparison;
+    for (const auto& file : all_textures()) {
+        CAPTURE(file);
+        comparison.add(*program_of(file, text_of(file)));
+    }
+    comparison.tell();
+    CHECK(comparison.undecided < comparison.samples / 4);
+    CHECK(comparison.loose < comparison.numbers / 4);
+}
+
+TEST_CASE("in Mesa random programs give what rounding to f32 can lead to")
+{
+    Comparison comparison;
+    for (uint64_t seed = 0; seed < tries(60u); ++seed) {
+        if (seed % 8 == 3) continue; // those may be refused
+        const std::string text = fuzz::random_source(seed);
+        const lang::CompileResult result = lang::compile({"random.haptel", text}, {});
+        if (!result.program) continue; // larger than the language allows
+        CAPTURE(seed, text);
+        comparison.add(*result.program);
+    }
+    comparison.tell();
+    CHECK(comparison.count > tries(40u));
+    CHECK(comparison.numbers > 1000u);
 }
 
 TEST_CASE("several texts stand in one shader, whatever textures and parameters are called")
