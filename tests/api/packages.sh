@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # packages.sh PACKAGES SOURCE [SUITE]: installs the Debian packages of a folder in a bare Debian that has a compiler of
-# C++, CMake, pkg-config and Python, and uses them there as somebody would who has nothing else of Haptel. The packages
-# are for the release on which they were made, SUITE (bookworm, trixie), or else that of this machine. Needs mmdebstrap,
-# the network, and no root where the system lets users have namespaces. Nothing stays behind.
+# C++, CMake, pkg-config and Python, and uses them there as somebody would who has nothing else of Haptel. A library of
+# textures is packed there, installed and compiled in a second bare Debian, and its code runs in a third, which has
+# nothing of Haptel at all. The packages are for the release on which they were made, SUITE (bookworm, trixie), or else
+# that of this machine. Needs mmdebstrap, the network, and no root where the system lets users have namespaces. Nothing
+# stays behind.
 set -euo pipefail
 
 say() { printf '==> %s\n' "$*"; }
@@ -18,10 +20,19 @@ if [[ ${1:-} != inside ]]; then
     cp "$packages"/*.deb "$source/tests/api/packages.sh" "$source/tests/api/python_test.py" \
         "$source/examples/textures/stone.haptel" "$made/haptel"
     cp -r "$source/examples/library" "$made/haptel"
-    say "a bare $suite"
-    mmdebstrap --quiet --variant=apt --include=g++,cmake,make,pkg-config,python3 --format=null \
-        --customize-hook="copy-in $made/haptel /" --customize-hook='chroot "$1" /haptel/packages.sh inside' \
-        "$suite" /dev/null
+    bare() { # STAGE INCLUDED OUT...: files of /haptel that come back
+        local stage=$1 included=$2 out=() name
+        shift 2
+        for name in "$@"; do out+=(--customize-hook="copy-out /haptel/$name $made/haptel"); done
+        say "a bare $suite: $stage"
+        mmdebstrap --quiet --variant=apt --include="$included" --format=null \
+            --customize-hook="copy-in $made/haptel /" --customize-hook="chroot \"\$1\" /haptel/packages.sh inside $stage" \
+            "${out[@]}" "$suite" /dev/null
+    }
+    bare first g++,cmake,make,pkg-config,python3 wood.haptlib
+    bare second gcc,libc6-dev use_wood libwood.so
+    rm "$made"/haptel/*.deb
+    bare third libc6
     exit
 fi
 
@@ -41,6 +52,56 @@ configure() {
 lists() { # NAME: whether a package of that name is installed
     dpkg-query -W -f '${Package} ${db:Status-Abbrev}\n' | grep -E "^$1.* i" # nothing else prints
 }
+
+# Another machine: the archive is installed, its textures are used by name, and compiled for programs without Haptel.
+second() {
+    get haptel
+    haptel install wood.haptlib
+    haptel list
+    printf 'import wood.waves;\ntexture two() { return 2.0 * waves(); }\n' >two.haptel
+    haptel eval two.haptel:two --at 1mm,2mm,0
+    haptel info wood
+    local textures
+    textures=$(find / -xdev -path '*libraries/wood*/waves.haptel' -not -path '*/tests/*' -print -quit)
+    haptel build "$textures" --emit header -o wood.h
+    haptel build "$textures" --emit static -o libwood.a
+    haptel build "$textures" --emit shared -o libwood.so
+    cat >use_wood.c <<'TEXT'
+#include "wood.h"
+#include <dlfcn.h>
+#include <stdio.h>
+int main(void)
+{
+    static haptel_point point;
+    haptel_sample linked, loaded;
+    void* library = dlopen("/haptel/libwood.so", RTLD_NOW);
+    const haptel_texture* texture = library ? dlsym(library, "haptel_texture_waves") : 0;
+    if (!texture || texture->abi != HAPTEL_ABI_VERSION) return 1;
+    point.p[0] = 1e-3;
+    point.p[1] = 2e-3;
+    haptel_texture_waves.height_gradient(&point, &haptel_defaults_waves, &linked);
+    texture->height_gradient(&point, &haptel_defaults_waves, &loaded);
+    printf("height_m %.17g, by dlopen %.17g\n", linked.height_m, loaded.height_m);
+    return linked.height_m != loaded.height_m || linked.gradient[0] != loaded.gradient[0];
+}
+TEXT
+    gcc -std=c99 -Wall -Werror use_wood.c libwood.a -o use_wood -lm -ldl
+    ./use_wood
+    haptel remove wood
+    ! haptel list | grep -q wood || fail "the library is still there"
+}
+
+# A third one, on which nothing of Haptel ever was.
+third() {
+    ! compgen -G '/usr/lib/*/lib*haptel*' && ! compgen -G '/usr/lib/*/libLLVM*' || fail "the system is not bare"
+    ldd use_wood libwood.so
+    ! ldd use_wood libwood.so | grep -E 'haptel|LLVM|stdc|not found' || fail "the code needs more than libm"
+    ./use_wood
+    say "packed, installed, compiled and used"
+}
+
+[[ $2 == first ]] || { "$2"; exit; }
+
 for so in libhaptel[0-9]*_*.deb; do so=${so#libhaptel} so=${so%%_*}; done
 lists 'libllvm|libglm|libtomlplusplus' && fail "the system is not bare"
 
@@ -84,6 +145,12 @@ haptel eval materials.wood.oak --at 1mm,2mm,0
 printf 'import materials.wood.oak;\ntexture two() { return 2.0 * oak(); }\n' >two.haptel
 haptel eval two.haptel:two --at 1mm,2mm,0
 [[ -e /usr/lib/udev/rules.d/60-haptel.rules ]] || fail "udev has no rules"
+
+say "a library, packed"
+haptel new --library wood >log 2>&1 || { cat log; exit 1; }
+haptel pack wood -o wood.haptlib
+haptel pack wood -o again.haptlib
+cmp wood.haptlib again.haptlib || fail "packed twice, the archives differ"
 
 say "apt-get purge"
 apt-get -qq purge --yes '*haptel*' >log 2>&1 || { cat log; exit 1; }
