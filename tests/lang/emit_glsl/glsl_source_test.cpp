@@ -138,8 +138,8 @@ TEST_CASE("in Mesa random programs give what rounding to f32 can lead to")
         comparison.add(*result.program);
     }
     comparison.tell();
-    CHECK(comparison.count > tries(40u));
-    CHECK(comparison.numbers > 1000u);
+    CHECK(comparison.count >= tries(40u));
+    CHECK(comparison.numbers > tries(3000u));
 }
 
 TEST_CASE("several texts stand in one shader, whatever textures and parameters are called")
