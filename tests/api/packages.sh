@@ -59,7 +59,7 @@ second() {
     haptel install wood.haptlib
     haptel list
     printf 'import wood.waves;\ntexture two() { return 2.0 * waves(); }\n' >two.haptel
-    haptel eval two.haptel:two --at 1mm,2mm,0
+    haptel eval two.haptel:two --at 0.3mm,2mm,0
     haptel info wood
     local textures
     textures=$(find / -xdev -path '*libraries/wood*/waves.haptel' -not -path '*/tests/*' -print -quit)
@@ -77,7 +77,7 @@ int main(void)
     void* library = dlopen("/haptel/libwood.so", RTLD_NOW);
     const haptel_texture* texture = library ? dlsym(library, "haptel_texture_waves") : 0;
     if (!texture || texture->abi != HAPTEL_ABI_VERSION) return 1;
-    point.p[0] = 1e-3;
+    point.p[0] = 0.3e-3;
     point.p[1] = 2e-3;
     haptel_texture_waves.height_gradient(&point, &haptel_defaults_waves, &linked);
     texture->height_gradient(&point, &haptel_defaults_waves, &loaded);
