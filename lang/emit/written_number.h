@@ -157,6 +157,7 @@ public:
     friend auto narrow(Written a) { return a.template as<typename Words::Single>(); }
     friend auto widen(Written a) { return a.template as<typename Words::Double>(); }
 
+    // In C alone, whose f64 it is for.
     friend void reduce_where(WrittenTruth condition, Written a, ir::elementary::Angle<Written>& angle)
     {
         Written* const parts[] = {&angle.quarters, &angle.high, &angle.low};

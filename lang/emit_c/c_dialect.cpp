@@ -1,7 +1,6 @@
 #include "lang/emit_c/c_dialect.h"
 
 #include "lang/emit/function.h"
-#include "lang/emit_c/operation.h"
 #include "lang/emit_c/words.h"
 
 namespace haptel::emit_c {
@@ -31,11 +30,6 @@ uint64_t CDialect::bytes(ir::Type type) const
 std::string CDialect::real(double value) const
 {
     return literal(value, is_single);
-}
-
-std::string CDialect::expression(ir::Op op, std::span<const std::string> operands) const
-{
-    return emit_c::expression(op, operands, is_single);
 }
 
 std::string CDialect::read(ir::Input input) const

@@ -20,7 +20,7 @@ public:
 
     std::string real(double value) const override;
     std::string truth(bool value) const override { return value ? "1" : "0"; }
-    std::string expression(ir::Op op, std::span<const std::string> operands) const override;
+    std::string expression(ir::Op op, std::span<const std::string> operands) const override; // operation.cpp
     std::string read(ir::Input input) const override;
     std::string read(const ir::Texture& texture, const ir::Parameter& parameter) const override;
 

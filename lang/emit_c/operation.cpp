@@ -1,10 +1,10 @@
-#include "lang/emit_c/operation.h"
+#include "lang/emit_c/c_dialect.h"
 
 #include "lang/ir/op_info.h"
 
 namespace haptel::emit_c {
 
-std::string expression(ir::Op op, std::span<const std::string> operands, bool is_single)
+std::string CDialect::expression(ir::Op op, std::span<const std::string> operands) const
 {
     using ir::Op;
     const std::string& a = operands.front();
