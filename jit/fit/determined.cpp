@@ -12,9 +12,7 @@ namespace haptel::jit {
 
 namespace {
 
-constexpr double told = 0.01;        // a parameter is known where its value is known to 1 %
-constexpr double rounding = 1e-9;    // of what was measured: less is no difference
-constexpr double alike_ratio = 1.01; // misfits within 1 % are told apart by nothing
+constexpr double told = 0.01; // a parameter is known where its value is known to 1 %
 
 // Standard deviations of the real unknowns, in their own units, if each row is off by the misfit at random; infinite
 // where a parameter could move without any row.
@@ -53,7 +51,7 @@ std::vector<Undetermined> undetermined(Unknowns& unknowns, Misfit& misfit, const
     const Found& best = all.front();
     std::vector<Found> alike;
     for (const Found& found : all.subspan(1))
-        if (found.misfit <= alike_ratio * best.misfit + rounding * misfit.scale()) alike.push_back(found);
+        if (fits_as_well(found, best, misfit)) alike.push_back(found);
 
     const std::vector<double> off = unknowns.reals.empty() ? std::vector<double>() : deviations(unknowns, misfit, best);
     for (std::size_t i = 0; i < unknowns.reals.size(); ++i) {

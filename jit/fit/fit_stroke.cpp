@@ -20,8 +20,8 @@ constexpr FitEffort of_strokes{24, 40, 4};
 std::size_t samples_of(const Stroke& stroke)
 {
     const double wanted = 4 * stroke.rate_hz / (felt_from_hz * (std::cbrt(2) - 1));
-    return std::bit_floor(
-        std::min(stroke.values.size(), std::bit_ceil(static_cast<std::size_t>(std::min(wanted, 1e6)))));
+    const std::size_t shortest = std::ranges::min_element(stroke.passes, {}, &std::vector<double>::size)->size();
+    return std::bit_floor(std::min(shortest, std::bit_ceil(static_cast<std::size_t>(std::min(wanted, 1e6)))));
 }
 
 } // namespace
@@ -30,14 +30,19 @@ FitResult fit_stroke(const std::shared_ptr<const CompiledProgram>& program, cons
                      const Stroke& stroke)
 {
     FitResult refused;
-    if (stroke.values.size() < samples_min) {
-        refused.failure = "expected a stroke of at least " + std::to_string(samples_min) + " samples, found " +
-                          std::to_string(stroke.values.size());
+    for (std::size_t i = 0; i < stroke.passes.size(); ++i)
+        if (stroke.passes[i].size() < samples_min) {
+            refused.failure = "expected passes of at least " + std::to_string(samples_min) + " samples, found " +
+                              std::to_string(stroke.passes[i].size()) + " in pass " + std::to_string(i + 1) + " of " +
+                              std::to_string(stroke.passes.size()) + ": leave it out";
+            return refused;
+        }
+    if (stroke.passes.empty()) {
+        refused.failure = "the stroke is empty";
         return refused;
     }
     const std::size_t samples = samples_of(stroke);
-    const double side_m = stroke.step_m() * static_cast<double>(samples);
-    TextureToFit fit(program, request, side_m, side_m);
+    TextureToFit fit(program, request, stroke.pass_m(), stroke.pass_m());
     refused.failure = fit.failure();
     if (!refused.failure.empty()) return refused;
 

@@ -161,6 +161,23 @@ void step_wholes(Unknowns& unknowns, Misfit& misfit, std::vector<Found>& all, in
     }
 }
 
+// Nobody is given another value than the texture's own where nothing asks for it: a fine ridge, for one, that is
+// recorded as a coarse one is (aliasing).
+void prefer_start(const Unknowns& unknowns, const Misfit& misfit, std::vector<Found>& all)
+{
+    const Guess start = unknowns.start();
+    const auto away = [&](const Found& found) {
+        double square = 0;
+        for (std::size_t i = 0; i < start.coordinates.size(); ++i)
+            square += std::pow(found.guess.coordinates[i] - start.coordinates[i], 2);
+        return square;
+    };
+    const auto others =
+        std::ranges::partition_point(all, [&](const Found& found) { return fits_as_well(found, all.front(), misfit); });
+    std::iter_swap(all.begin(), std::min_element(all.begin(), others,
+                                                 [&](const Found& a, const Found& b) { return away(a) < away(b); }));
+}
+
 // What else fits as well near the best: found by going away from it a little and coming back.
 void shake(Unknowns& unknowns, Misfit& misfit, std::vector<Found>& all, const FitEffort& effort, uint64_t seed)
 {
@@ -176,6 +193,12 @@ void shake(Unknowns& unknowns, Misfit& misfit, std::vector<Found>& all, const Fi
 }
 
 } // namespace
+
+bool fits_as_well(const Found& found, const Found& best, const Misfit& misfit)
+{
+    constexpr double alike_ratio = 1.01; // misfits within 1 % are told apart by nothing
+    return found.misfit <= alike_ratio * best.misfit + rounding * misfit.scale();
+}
 
 Found refine(Unknowns& unknowns, Misfit& misfit, Guess start, int steps_max)
 {
@@ -226,6 +249,7 @@ std::vector<Found> search(Unknowns& unknowns, std::span<const std::unique_ptr<Mi
     }
     step_wholes(unknowns, *levels.back(), all, effort.steps_at_last);
     shake(unknowns, *levels.back(), all, effort, seed);
+    prefer_start(unknowns, *levels.back(), all);
     return all;
 }
 

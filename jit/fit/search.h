@@ -23,8 +23,13 @@ struct Found {
     double misfit = 0; // root of the mean square of the rows, in their unit
 };
 
+inline constexpr double rounding = 1e-9; // of what was measured: less is no difference
+// Whether nothing that was measured tells it from the best.
+bool fits_as_well(const Found& found, const Found& best, const Misfit& misfit);
+
 // Each level is harder to be near to than the one before, and tells more: first a small part of what was measured,
-// where a guess need not be close, last all of it. What is found is sorted, the best first; the same for the same seed.
+// where a guess need not be close, last all of it. What is found is sorted, the best first, and of what fits as well as
+// that what is nearest to where the unknowns start; the same for the same seed.
 // At least one level, and one guess is always found. `overview` is all of what was measured with few rows: what is like
 // it is tried on the last level at once, where a small part tells nothing.
 std::vector<Found> search(Unknowns& unknowns, std::span<const std::unique_ptr<Misfit>> levels, Misfit& overview,

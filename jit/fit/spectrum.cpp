@@ -73,17 +73,23 @@ std::vector<double> LineSpectrum::moves(std::span<const double> line_moves)
     return sums;
 }
 
-std::vector<double> LineSpectrum::mean_powers(std::span<const double> record, const std::function<double(double)>& gain)
+std::vector<double> LineSpectrum::mean_powers(std::span<const std::vector<double>> records,
+                                              const std::function<double(double)>& gain)
 {
     std::vector<double> sums(all.size());
-    const std::size_t count = window.size(), pieces = 1 + (record.size() - count) / (count / 2);
-    const double scale = 2 / std::pow(static_cast<double>(count), 2) / static_cast<double>(pieces);
-    for (std::size_t piece = 0; piece < pieces; ++piece) {
-        const std::vector<std::complex<double>> one = transform(record.subspan(piece * (count / 2), count));
-        for (std::size_t k = 1; k < band_of.size(); ++k)
-            if (band_of[k] >= 0)
-                sums[static_cast<std::size_t>(band_of[k])] += scale * gain(frequency(k)) * std::norm(one[k]);
+    const std::size_t count = window.size();
+    double pieces = 0;
+    for (const std::vector<double>& record : records) {
+        const std::size_t rest = record.size() - count, further = (2 * rest + count - 1) / count;
+        for (std::size_t piece = 0; piece <= further; ++piece, ++pieces) {
+            const std::size_t from = further > 0 ? rest * piece / further : 0;
+            const std::vector<std::complex<double>> one = transform(std::span(record).subspan(from, count));
+            for (std::size_t k = 1; k < band_of.size(); ++k)
+                if (band_of[k] >= 0)
+                    sums[static_cast<std::size_t>(band_of[k])] += gain(frequency(k)) * std::norm(one[k]);
+        }
     }
+    for (double& sum : sums) sum *= 2 / (std::pow(static_cast<double>(count), 2) * pieces);
     return sums;
 }
 

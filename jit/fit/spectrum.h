@@ -29,9 +29,10 @@ public:
     std::vector<double> powers(std::span<const double> line);
     // How those powers move when the line moves like that.
     std::vector<double> moves(std::span<const double> line_moves);
-    // Over a long record: the mean over pieces that overlap by half, seen through a filter: by its gain for power at a
-    // frequency.
-    std::vector<double> mean_powers(std::span<const double> record, const std::function<double(double)>& gain);
+    // Over longer records: the mean over pieces that overlap by half or more, seen through a filter: by its gain for
+    // power at a frequency.
+    std::vector<double> mean_powers(std::span<const std::vector<double>> records,
+                                    const std::function<double(double)>& gain);
     // Of noise that is white with a mean square of 1, seen through such a filter.
     std::vector<double> noise(const std::function<double(double)>& gain) const;
 

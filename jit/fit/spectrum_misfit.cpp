@@ -14,23 +14,33 @@ constexpr double off_sure_db = 0.2;   // what no model of a surface is nearer th
 // Of the strongest band's power, as recorded: what is weaker is drowned, and no logarithm is of 0.
 constexpr double drowned = 1e-4;
 
-std::vector<haptel_point> lines_over(double step_m, std::size_t count, std::size_t lines)
+// Along the stroke's direction, anywhere on a square whose side is as long as its passes.
+std::vector<haptel_point> lines_over(const Stroke& stroke, std::size_t count, std::size_t lines)
 {
     std::vector<haptel_point> points;
-    const double length_m = step_m * static_cast<double>(count);
-    for (std::size_t line = 0; line < lines; ++line)
+    const double side_m = stroke.pass_m(), spare_m = side_m - stroke.step_m() * static_cast<double>(count);
+    const auto& [x, y] = stroke.direction;
+    for (std::size_t line = 0; line < lines; ++line) {
+        // not at even distances, which could be a texture's own (Roberts' sequence)
+        constexpr double root = 1.324717957244746;
+        const double first = std::fmod(0.5 + static_cast<double>(line) / root, 1.0),
+                     second = std::fmod(0.5 + static_cast<double>(line) / (root * root), 1.0);
         for (std::size_t i = 0; i < count; ++i) {
             haptel_point point{};
-            point.p[0] = step_m * static_cast<double>(i) - length_m / 2;
-            // not at even distances, which could be a texture's own
-            point.p[1] = length_m * (std::fmod(0.5 + static_cast<double>(line) / std::numbers::phi, 1.0) - 0.5);
+            const double along_m = stroke.step_m() * static_cast<double>(i) + spare_m * first - side_m / 2,
+                         across_m = side_m * (second - 0.5);
+            point.p[0] = along_m * x - across_m * y;
+            point.p[1] = along_m * y + across_m * x;
             point.n[2] = 1;
             point.tangent[0] = point.bitangent[1] = 1;
-            point.uv[0] = point.p[0] / length_m + 0.5;
-            point.uv[1] = point.p[1] / length_m + 0.5;
-            point.uv_dp[0][0] = point.uv_dp[1][1] = 1 / length_m;
+            point.uv[0] = point.p[0] / side_m + 0.5;
+            point.uv[1] = point.p[1] / side_m + 0.5;
+            point.uv_dp[0][0] = point.uv_dp[1][1] = 1 / side_m;
+            point.velocity[0] = stroke.speed_m_per_s * x;
+            point.velocity[1] = stroke.speed_m_per_s * y;
             points.push_back(point);
         }
+    }
     return points;
 }
 
@@ -55,17 +65,17 @@ SpectrumMisfit::SpectrumMisfit(const ParameterGradient& of, const Stroke& stroke
     , spectrum(samples, stroke.step_m(),
                thirds_of_octaves(felt_from_hz / stroke.speed_m_per_s, felt_to_hz / stroke.speed_m_per_s, samples,
                                  stroke.step_m()))
-    , points(lines_over(stroke.step_m(), samples, how_many))
+    , points(lines_over(stroke, samples, how_many))
     , heights_m(samples * how_many)
 {
     const auto as_height = [&](double cycles_per_m) { return stroke.power_of_height(cycles_per_m); };
-    measured = spectrum.mean_powers(stroke.values, as_height);
+    measured = spectrum.mean_powers(stroke.passes, as_height);
     noise = spectrum.noise(as_height);
-    const std::vector<double> recorded = spectrum.mean_powers(stroke.values, [](double) { return 1.0; });
+    const std::vector<double> recorded = spectrum.mean_powers(stroke.passes, [](double) { return 1.0; });
     const double drowned_power = std::max(drowned * (recorded.empty() ? 0 : std::ranges::max(recorded)), least_power);
     for (const Band& band : bands()) unfelt.push_back(drowned_power * as_height(band.middle()));
     // The power of a band that n independent values make has a standard deviation of 1/sqrt(n) of itself.
-    const double recorded_s = static_cast<double>(stroke.values.size()) / stroke.rate_hz,
+    const double recorded_s = static_cast<double>(stroke.samples()) / stroke.rate_hz,
                  made_s = static_cast<double>(count * lines) / stroke.rate_hz;
     double square = 0;
     for (const Band& band : bands()) {

@@ -14,7 +14,7 @@ namespace haptel::jit {
 
 class SpectrumMisfit final : public Misfit {
 public:
-    // Lines of `count` samples, at most as many as the stroke has, along x, side by side over the box of the texture.
+    // Lines of `count` samples, at most as many as each pass has, over a square whose side is as long as its passes.
     SpectrumMisfit(const ParameterGradient& texture, const Stroke& stroke, std::size_t count, std::size_t lines);
     std::size_t rows() const override { return spectrum.bands().size(); }
     void residuals(const void* block, std::span<double> rows) override; // decibels, on average

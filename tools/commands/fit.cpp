@@ -9,6 +9,7 @@
 #include "tools/report/fit_report.h"
 #include "tools/report/measured_file.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
@@ -24,6 +25,7 @@ struct FitOptions {
     std::string measured, preset;
     double pixel_m = 0, white_m = 0;
     std::optional<double> speed_m_per_s, stiffness_n_per_m;
+    glm::dvec2 direction{1, 0};
     uint64_t seed = 1;
     bool json = false;
 };
@@ -39,6 +41,15 @@ ExitCode refused(const std::string& error, const std::string& hint)
     say_error(error);
     if (!hint.empty()) fmt::print(stderr, "  hint: {}\n", hint);
     return ExitCode::findings;
+}
+
+void set_direction(FitOptions& options, const std::string& text)
+{
+    const Parsed<glm::dvec2> direction = parse_vector2(text);
+    if (!direction) throw CLI::ValidationError("--direction", direction.error);
+    const double length = glm::length(direction.value);
+    if (!(length > 0) || !std::isfinite(length)) throw CLI::ValidationError("--direction", "it has no direction");
+    options.direction = direction.value / length;
 }
 
 // The preset beside the texture that it is of, in a file of its own that imports it.
@@ -72,6 +83,7 @@ ExitCode run(const FitOptions& options)
         if (stroke.stroke.of == jit::Stroke::Of::force && !options.stiffness_n_per_m)
             return misuse("a stroke of forces needs --stiffness, newtons per metre of height");
         stroke.stroke.stiffness_n_per_m = options.stiffness_n_per_m.value_or(0);
+        stroke.stroke.direction[0] = options.direction.x, stroke.stroke.direction[1] = options.direction.y;
     } else {
         heights = read_heights(options.measured, options.pixel_m, options.white_m);
         if (!heights.error.empty()) return refused(heights.error, heights.hint);
@@ -120,6 +132,11 @@ Command fit_command(CLI::App& app)
     add_number(*command, "--speed", options->speed_m_per_s, "Of the hand along the stroke, m/s", NumberRange::positive);
     add_number(*command, "--stiffness", options->stiffness_n_per_m,
                "Of what pressed the tip: newtons of force per metre of height", NumberRange::positive);
+    command
+        ->add_option_function<std::string>(
+            "--direction", [options](const std::string& text) { set_direction(*options, text); },
+            "Of the stroke over the texture [1,0]")
+        ->type_name("X,Y");
     add_parameters(*command, options->parameters);
     command->add_option("--seed", options->seed, "Of the guesses that the search begins with [1]");
     command->add_option("--preset", options->preset, "Write the texture `fitted`, a preset with what was found")

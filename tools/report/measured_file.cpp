@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -97,23 +98,34 @@ MeasuredStroke read_stroke(const std::string& file)
             "{}:1: expected the columns time_s and force_n, fz_n or acceleration_m_per_s2, found {}", file,
             fmt::join(header.begin(),
                       header.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(header.size(), 8)), ", ")));
-    std::vector<double> times_s;
+    std::vector<double> times_s, values;
     for (std::size_t number = 2; !text.empty(); ++number) {
         const std::vector<std::string_view> cells = columns_in(next_line());
         if (cells.size() == 1 && cells[0].empty()) continue;
         for (const std::size_t column : {*time, *value}) {
             const Parsed<double> parsed = parse_number(column < cells.size() ? cells[column] : "");
             if (!parsed) return no_stroke(fmt::format("{}:{}: {}: {}", file, number, header[column], parsed.error));
-            (column == *time ? times_s : read.stroke.values).push_back(parsed.value);
+            (column == *time ? times_s : values).push_back(parsed.value);
         }
     }
     if (times_s.size() < 2) return no_stroke(fmt::format("'{}' has no two samples", file));
-    const double step_s = (times_s.back() - times_s.front()) / static_cast<double>(times_s.size() - 1);
-    for (std::size_t i = 1; i < times_s.size(); ++i)
-        if (!(step_s > 0) || std::abs(times_s[i] - times_s[i - 1] - step_s) > std::max(uneven_max * step_s, 1e-9))
+    std::vector<double> apart_s;
+    for (std::size_t i = 1; i < times_s.size(); ++i) apart_s.push_back(times_s[i] - times_s[i - 1]);
+    std::vector<double> sorted_s = apart_s;
+    std::ranges::sort(sorted_s);
+    const double gap_s = 1.5 * sorted_s[sorted_s.size() / 2]; // where samples are left out
+    const auto within = std::ranges::subrange(sorted_s.begin(), std::ranges::lower_bound(sorted_s, gap_s));
+    const double step_s = std::reduce(within.begin(), within.end()) / static_cast<double>(within.size());
+    read.stroke.passes = {{values[0]}};
+    for (std::size_t i = 1; i < times_s.size(); ++i) {
+        const bool is_gap = apart_s[i - 1] >= gap_s;
+        if (!(step_s > 0) || (!is_gap && std::abs(apart_s[i - 1] - step_s) > std::max(uneven_max * step_s, 1e-9)))
             return no_stroke(fmt::format("{}:{}: expected a sample each {:.6g} s, found one after {:.6g} s", file,
-                                         i + 2, step_s, times_s[i] - times_s[i - 1]),
+                                         i + 2, step_s, apart_s[i - 1]),
                              "a spectrum needs samples at even distances: resample the recording");
+        if (is_gap) read.stroke.passes.emplace_back();
+        read.stroke.passes.back().push_back(values[i]);
+    }
     read.stroke.rate_hz = 1 / step_s;
     return read;
 }

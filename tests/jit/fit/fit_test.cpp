@@ -166,6 +166,6 @@ TEST_CASE("what cannot be fitted is refused in words")
     CHECK(fit_heights(compiled.program, request, map).failure.find("wood") != std::string::npos);
     Stroke stroke;
     stroke.stiffness_n_per_m = 700;
-    stroke.values = {1, 2, 3};
+    stroke.passes = {{1, 2, 3}};
     CHECK(fit_stroke(compiled.program, request, stroke).failure.find("samples") != std::string::npos);
 }

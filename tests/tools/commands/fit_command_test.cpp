@@ -93,13 +93,39 @@ TEST_CASE("fit finds the pitch and depth that a noisy stroke of forces or accele
     }
 }
 
+TEST_CASE("fit takes passes with gaps between them, along the direction that it is told")
+{
+    const Folder folder;
+    const std::string file = folder.write("ridges.haptel", ridges);
+    // Along (3, 4) at 0.25 m/s, the hand's x moves at 0.15 m/s: ridges of 2 mm are 75 Hz. Each pass begins elsewhere.
+    std::string table = "time_s,force_n\n";
+    for (int pass = 0; pass < 12; ++pass)
+        for (int i = 0; i < 600; ++i)
+            table += std::to_string(pass + i * 1e-3) + "," +
+                     std::to_string(700 * 0.05e-3 * std::sin(2 * std::numbers::pi * (75e-3 * i + 0.29 * pass))) + "\n";
+    const std::string stroke = folder.write("stroke.csv", table), common = "fit '" + file + ":ridges' --to '" + stroke +
+                                                                           "' --speed 0.25 --stiffness 700"
+                                                                           " --set profile=round --json";
+    const Ran ran = run_command(common + " --direction 3,4");
+    INFO(ran.err << ran.out);
+    REQUIRE(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    CHECK(json["parameters"]["pitch"].get<double>() == Approx(2e-3).epsilon(0.12)); // within its third of an octave
+    CHECK(json["parameters"]["depth"].get<double>() == Approx(0.1e-3).epsilon(0.05));
+    CHECK(json["error"].get<double>() < 1);
+
+    CHECK(run_command(common + " --direction 0,0").code == 2);
+    CHECK(run_command(common + " --direction north").code == 2);
+}
+
 TEST_CASE("fit says what is missing, wrong or unreadable")
 {
     const Folder folder;
     const std::string file = folder.write("ridges.haptel", ridges),
                       map = folder.write("map.pgm", picture(1e-4, 1e-3, 0)),
                       table = folder.write("table.csv", "time_s,x\n0,1\n"),
-                      uneven = folder.write("uneven.csv", "time_s,force_n\n0,1\n0.001,1\n0.003,1\n"),
+                      uneven = folder.write("uneven.csv", "time_s,force_n\n0,1\n0.001,1\n0.0022,1\n"),
+                      backward = folder.write("backward.csv", "time_s,force_n\n0,1\n0.001,1\n0.0005,1\n"),
                       words = folder.write("words.csv", "time_s,force_n\n0,1\n0.001,many\n"),
                       stroke = folder.write("stroke.csv", "time_s,force_n\n0,1\n0.001,1\n0.002,1\n");
     const auto fit = [&](const std::string& rest) { return run_command("fit '" + file + ":ridges' --to " + rest); };
@@ -117,6 +143,7 @@ TEST_CASE("fit says what is missing, wrong or unreadable")
     says("'" + file + "' --scale 1um --height 1mm", 1, "ridges.haptel");
     says("'" + table + "' --speed 0.1 --stiffness 1", 1, "table.csv:1: expected the columns");
     says("'" + uneven + "' --speed 0.1 --stiffness 1", 1, "even distances");
+    says("'" + backward + "' --speed 0.1 --stiffness 1", 1, "even distances");
     says("'" + words + "' --speed 0.1 --stiffness 1", 1, "words.csv:3: force_n");
     says("'" + stroke + "' --speed 0.1 --stiffness 1", 1, "at least 128 samples, found 3");
     says("'" + map + "' --scale 0.1mm --height 1mm --set pich=1mm", 1, "pitch");
