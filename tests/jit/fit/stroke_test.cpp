@@ -53,9 +53,9 @@ constexpr Stroked stroked_materials[] = {{"fabric/burlap", "burlap", 0.1},
                                          {"wood/cork", "cork", 0.1},
                                          {"wood/oak", "oak", 0.1},
                                          {"wood/planed", "planed", 0.1},
-                                         {"wood/spruce", "spruce", 0.1}};
+                                         {"wood/spruce", "spruce", 0.1, across}};
 
-constexpr double pass_m = 0.15; // of a minute of passes, side by side over a square
+constexpr double pass_m = 0.15; // of a minute of passes over a square
 
 struct Recorded {
     Stroke stroke;
@@ -75,13 +75,15 @@ Recorded recorded(const ParameterGradient& texture, const void* block, const Str
     const auto& [x, y] = stroke.direction;
     const auto samples = static_cast<std::size_t>(pass_m / stroke.step_m());
     const auto passes = static_cast<std::size_t>(60 * stroke.speed_m_per_s / pass_m);
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> anywhere(-0.5, 0.5);
     double square = 0;
     for (std::size_t pass = 0; pass < passes; ++pass) {
         std::vector<haptel_point> points(samples);
+        const double across_m = pass_m * anywhere(random); // at even distances each might meet a weave alike
         for (std::size_t i = 0; i < samples; ++i) {
             const double share = static_cast<double>(i) / static_cast<double>(samples);
-            const double along_m = pass_m * (pass % 2 ? 0.5 - share : share - 0.5),
-                         across_m = pass_m * ((static_cast<double>(pass) + 0.5) / static_cast<double>(passes) - 0.5);
+            const double along_m = pass_m * (pass % 2 ? 0.5 - share : share - 0.5);
             points[i].p[0] = along_m * x - across_m * y;
             points[i].p[1] = along_m * y + across_m * x;
             points[i].n[2] = 1;
@@ -93,7 +95,6 @@ Recorded recorded(const ParameterGradient& texture, const void* block, const Str
         for (const double h : heights_m) square += (h - mean) * (h - mean) / static_cast<double>(samples * passes);
     }
     made.noise_m2 = 9e-4 * square;
-    std::mt19937_64 random(seed);
     std::normal_distribution<double> noise(0, std::sqrt(made.noise_m2));
     stroke.passes = made.heights_m;
     for (std::vector<double>& pass : stroke.passes)
