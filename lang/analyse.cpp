@@ -218,9 +218,14 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
         over_ranges.parameters.push_back(range_of(texture.parameters[i], values[i]));
     }
     Analysis found{ir::texture_bounds(program.module, texture, at_values, where.evaluations),
-                   ir::texture_bounds(program.module, texture, over_ranges, where.evaluations),
+                   {},
                    ir::output_bounds(program.module, texture, at_values, where.evaluations),
-                   ir::output_bounds(program.module, texture, over_ranges, where.evaluations)};
+                   {}};
+    const bool has_ranges = !std::ranges::all_of(over_ranges.parameters, &ir::Interval::is_point);
+    found.over_ranges =
+        has_ranges ? ir::texture_bounds(program.module, texture, over_ranges, where.evaluations) : found.at_values;
+    found.outputs_over_ranges =
+        has_ranges ? ir::output_bounds(program.module, texture, over_ranges, where.evaluations) : found.outputs;
     report_scales(texture, found.outputs_over_ranges, diagnostics);
     std::set<std::pair<uint32_t, ir::FalseFact::What>> told; // by place: each once
     for (const ir::TextureBounds* bounds : {&found.at_values, &found.over_ranges})

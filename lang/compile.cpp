@@ -198,13 +198,16 @@ CompileResult compile(const SourceFile& main, const CompileOptions& options,
 } // namespace
 
 // Once as a rule; again where something is said that rests on the whole library, as who mistypes a name is told of
-// names that nobody has written yet.
+// names that nobody has written yet. What is too large is so beside any library.
 CompileResult compile(SourceFile main, const CompileOptions& options)
 {
     std::shared_ptr<const CheckedLibrary> library;
     CompileResult result = compile(main, options, library);
     if (!library) return result;
-    const bool is_all_known = library->is_whole || !result.diagnostics.has_errors();
+    const auto rests_on_names = [](const Diagnostic& said) {
+        return said.severity == Severity::error && said.code != "too-large";
+    };
+    const bool is_all_known = library->is_whole || std::ranges::none_of(result.diagnostics.all(), rests_on_names);
     if (is_all_known && library->diagnostics.all().empty()) return result;
     library = whole_library(options.library);
     return compile(main, options, library);

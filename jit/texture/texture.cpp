@@ -42,21 +42,6 @@ std::future<void> start_engine()
     return has_begun.exchange(true) ? std::future<void>() : std::async(std::launch::async, [] { engine_info(); });
 }
 
-CompiledTextures with_code(lang::CompileResult checked, const TextureOptions& options)
-{
-    CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
-                            std::move(checked.files)};
-    if (!checked.program) return result;
-    std::vector<EntryPoint> entries = entry_points(checked.program->module, options);
-    CodeResult code = compile_code(checked.program->module, entries, {options.effort, options.kernels});
-    if (code.code)
-        result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(entries),
-                                                           std::move(code.code), options.facts_over_ranges);
-    else
-        result.diagnostics.error({}, "no-code", "no machine code could be made: " + code.error);
-    return result;
-}
-
 } // namespace
 
 std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOptions& options)
@@ -139,6 +124,21 @@ lang::CompileResult check_texture_file(const std::string& path, TextureOptions o
     result.files = {path};
     result.sources.add({path, {}});
     result.diagnostics.error({}, "unreadable-file", source.error, source.hint);
+    return result;
+}
+
+CompiledTextures with_code(lang::CompileResult checked, const TextureOptions& options)
+{
+    CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
+                            std::move(checked.files)};
+    if (!checked.program) return result;
+    std::vector<EntryPoint> entries = entry_points(checked.program->module, options);
+    CodeResult code = compile_code(checked.program->module, entries, {options.effort, options.kernels});
+    if (code.code)
+        result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(entries),
+                                                           std::move(code.code), options.facts_over_ranges);
+    else
+        result.diagnostics.error({}, "no-code", "no machine code could be made: " + code.error);
     return result;
 }
 

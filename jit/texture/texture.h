@@ -98,6 +98,8 @@ CompiledTextures compile_texture(std::string_view text, const TextureOptions& op
 
 // The first half of it: what there is to say about the text, and its IR; no code is made.
 lang::CompileResult check_texture_file(const std::string& path, TextureOptions options = {});
+// The second half: code of what the first one made, if it made something.
+CompiledTextures with_code(lang::CompileResult checked, const TextureOptions& options);
 
 // What becomes code of such a program, under these options.
 std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOptions& options);

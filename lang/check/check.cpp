@@ -366,15 +366,8 @@ private:
     void check_textures(uint32_t file, const FileScope& scope)
     {
         std::map<std::string_view, const Texture*> seen;
-        size_t count = 0;
         for (Texture& tree : program.files[file].tree.textures) {
             if (diagnostics.full()) return;
-            if (++count > textures_max) {
-                diagnostics.error(tree.name.span, "too-large",
-                                  "expected at most " + std::to_string(textures_max) + " textures in a file",
-                                  "put the others into another file");
-                return;
-            }
             const auto [twin, is_new] = seen.try_emplace(tree.name.text, &tree);
             if (!is_new)
                 diagnostics

@@ -1,6 +1,7 @@
 // What stands at the top of a file: imports, constants, functions, textures; and the small rules that all share.
 #include "lang/abi/outputs.h"
 #include "lang/syntax/grammar.h"
+#include "lang/text/limits.h"
 
 #include <algorithm>
 
@@ -320,6 +321,11 @@ void Grammar::texture(File& result)
     advance();
     made.name = name("after 'texture'");
     if (made.name.text.empty()) return;
+    if (result.textures.size() + result.presets.size() == textures_max) {
+        error(made.name.span, "too-large", "expected at most " + std::to_string(textures_max) + " textures in a file",
+              "put the others into another file");
+        return give_up(); // trees of what is refused would cost more than all else
+    }
     if (accept(Token::assign)) return preset(result, std::move(made), first);
     if (at(Token::left_brace)) {
         diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture",

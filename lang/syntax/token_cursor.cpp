@@ -61,7 +61,6 @@ void TokenCursor::stand_again()
     footing_line = sources.line_of(file, previous_span().end);
 }
 
-// Leaves the rest unread.
 void TokenCursor::give_up()
 {
     given_up = std::min(given_up, position);

@@ -51,6 +51,7 @@ protected:
     Diagnostic& error(Span where, ErrorCode code, std::string message, std::string_view hint = {});
     // What is wrong and yet read as it was meant: never silent, nor lost afterwards.
     Diagnostic& slip(Span where, ErrorCode code, std::string message, std::string_view hint);
+    void give_up();            // leaves the rest unread
     void stand_again();        // no longer lost: what comes is read as it stands
     std::string found() const; // ", found 'x'"
     // "texture wood" or "import wood": never inside a body, so that a bracket left open does not reach across.
@@ -103,7 +104,6 @@ protected:
 private:
     Span span_of(const PlacedToken& placed) const { return {file, placed.begin, placed.end}; }
     void refuse_to_nest();
-    void give_up();
 
     uint32_t footing_line = 0; // where we last stood again; 0: nowhere yet
     bool end_is_reported = false;

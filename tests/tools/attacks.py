@@ -5,6 +5,7 @@ or 1, say something where it ends with 1, not be long about it, and stay within 
     --seconds S  of processor time for each, 2 unless said otherwise
     --keep DIR   writes the files there, to be looked at
     --only PART  those whose name has this in it
+    --slowest N  says which took longest
 """
 
 import argparse
@@ -117,6 +118,10 @@ def cost():
         yield f"matrices_{levels}", texture("mat4 m = mat4(p.x); " + "m = m * m + m; " * levels * 20 + "return m[0][0];")
         yield f"minima_{levels}", texture("float a = p.x; " + "".join(
             f"a = min(a, abs(p.y - {i}.0) + fract(a * {i}.5)); " for i in range(levels * 50)) + "return a;")
+    # Facts are tried at many points, each of which takes as long as the loop.
+    yield "facts_of_a_long_loop", texture(
+        "return f(p.x);", "/// @facts value -1 .. 1, slope 1, class C1\nfloat f(float x) { float a = x; "
+        "for (int i = 0; i < 100000; i++) a = 0.5 * a + x; return 0.1 * a; }")
     for octaves in (16, 1_000, 1_000_000, 2_147_483_647):
         yield f"octaves_{octaves}", texture("return 1um * fbm(p, octaves);", "", f"int octaves = 4 in 1 .. {octaves}")
     for size in (1_000, 1_000_000, 2_147_483_647, 4_294_967_296, -1, 0):
@@ -258,9 +263,10 @@ def main():
     parser.add_argument("--seconds", type=float, default=2)
     parser.add_argument("--keep")
     parser.add_argument("--only", default="")
+    parser.add_argument("--slowest", type=int, default=0)
     options = parser.parse_args()
     haptel, failed, count = os.path.abspath(options.haptel), 0, 0
-    longest, largest = (0, ""), (0, "")
+    times, largest = [(0, "")], (0, "")
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(options.keep or temporary)
         folder.mkdir(exist_ok=True)
@@ -273,11 +279,15 @@ def main():
                 (folder / other).write_text(its_text)
             wrong, seconds, memory = attack(haptel, file, options.seconds)
             count += 1
-            longest, largest = max(longest, (seconds, name)), max(largest, (memory, name))
+            times.append((seconds, name))
+            largest = max(largest, (memory, name))
             if wrong:
                 failed += 1
                 print(f"{name}: {wrong}", flush=True)
-    print(f"{count} attacks, {failed} did harm; longest {longest[0]:.2f} s ({longest[1]}), "
+    times.sort(reverse=True)
+    for seconds, name in times[:options.slowest]:
+        print(f"{seconds:6.2f} s {name}")
+    print(f"{count} attacks, {failed} did harm; longest {times[0][0]:.2f} s ({times[0][1]}), "
           f"largest {largest[0] >> 20} MiB ({largest[1]})")
     return 1 if failed else 0
 

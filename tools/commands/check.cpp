@@ -257,7 +257,7 @@ void CheckRun::check(const std::string& path)
     if (result.program) {
         const auto& textures = result.program->module.textures;
         const jit::CompiledTextures compiled =
-            diagnostics.has_errors() ? jit::CompiledTextures() : jit::compile_texture_file(path, jit::servo_options());
+            diagnostics.has_errors() ? jit::CompiledTextures() : jit::with_code(result, jit::servo_options());
         for (const ir::Texture& texture : textures) {
             progress.show(static_cast<double>(&texture - textures.data()) / static_cast<double>(textures.size()));
             const std::vector<double> values = values_of(path, texture);

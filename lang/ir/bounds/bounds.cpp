@@ -12,6 +12,7 @@ namespace haptel::ir {
 namespace {
 
 constexpr uint64_t operations_per_evaluation = 1'000'000;
+constexpr uint64_t operations_of_derivatives = 4'000'000; // as operations_of_check; calls count as well
 // Instructions, of the longest programs that are looked at as closely: of longer ones every step costs more, so that
 // fewer are taken.
 constexpr uint64_t usual_extent = 5'000;
@@ -20,7 +21,7 @@ constexpr uint64_t usual_extent = 5'000;
 constexpr double useless = 1e9;
 // Twenty of each side of a place in space: a millionth of the box.
 constexpr int cuts_of_dive = 60;
-constexpr uint64_t dives_per_proof = 4; // by operations
+constexpr uint64_t looks_per_proof = 4; // by operations: a dive, or all points for facts
 // At which declared facts are tried: enough for what is wrong in a tenth of the box, and a fraction of the time that
 // bounds take.
 constexpr uint32_t points_for_facts = 64;
@@ -40,13 +41,13 @@ class Bisection {
 public:
     // `result` of the body: 0 is the height, then the outputs.
     Bisection(const Module& module, const Texture& texture, BoundsBox around, Goal which, size_t result = 0,
-              uint64_t operations = operations_of_check)
+              uint64_t operations = operations_of_derivatives)
         : evaluator(module, operations_per_evaluation)
         , entry(texture.body)
         , of_result(result)
         , box(std::move(around))
         , goal(which)
-        , operations_of_dive(operations / dives_per_proof)
+        , operations_of_look(operations / looks_per_proof)
         , queues(goal == Goal::no_faults ? 1 : 2)
     {
         const uint64_t extent = instructions_reached(module, entry);
@@ -90,12 +91,13 @@ public:
         return bound(0) == 0;
     }
 
-    // Evaluates single points, evenly spread: facts that are false may show there.
+    // Evaluates single points, evenly spread: facts that are false may show there. Fewer where one takes long.
     void look_at_points(uint32_t count)
     {
+        operations_left = operations_of_look;
         double root = 1; // of x^(n + 1) = x + 1 for n sides: one is the golden ratio (Roberts' sequence)
         for (int i = 0; i < 40; ++i) root = std::pow(1 + root, 1 / (static_cast<double>(sides.size()) + 1));
-        for (uint32_t k = 1; k <= count; ++k) {
+        for (uint32_t k = 1; k <= count && operations_left > 0; ++k) {
             double step = 1 / root;
             for (size_t i = 0; i < sides.size(); ++i, step /= root) {
                 const Interval& all = pieces[0].sides[i];
@@ -103,6 +105,7 @@ public:
                 *sides[i] = {at, at};
             }
             evaluator.run_varying(entry, box, IntervalEvaluator::Sought::curvature);
+            spend();
         }
     }
 
@@ -110,7 +113,7 @@ public:
     void dive(size_t which, double (&place)[input_count])
     {
         size_t at = next_of(queues[which]);
-        operations_left = operations_of_dive;
+        operations_left = operations_of_look;
         for (int cuts = 0; cuts < cuts_of_dive && operations_left > 0; ++cuts) {
             if (!halve(at)) break;
             at = pieces.size() - (pieces.end()[-2].bounds[which] > pieces.back().bounds[which] ? 2 : 1);
@@ -146,7 +149,7 @@ private:
     size_t of_result;
     BoundsBox box;
     Goal goal;
-    uint64_t operations_left, operations_of_dive;
+    uint64_t operations_left, operations_of_look;
     std::vector<Interval*> sides; // of `box` that can be cut
     std::vector<Piece> pieces;
     std::vector<Queue> queues; // by bound
@@ -181,7 +184,7 @@ private:
             piece.bounds = {variations[0].slope, is_wanted(1) ? variations[0].curvature : whole.curvature};
             if (goal == Goal::no_faults) piece.bounds = {may_fault ? 1.0 : 0.0};
         }
-        operations_left -= std::min(operations_left, evaluator.operations_used() + 1);
+        spend();
         piece.may_be_nan = value.may_be_nan;
         for (size_t i = 0; i < queues.size(); ++i) {
             if (value.is_empty()) piece.bounds[i] = -infinity;
@@ -189,6 +192,8 @@ private:
         }
         pieces.push_back(std::move(piece));
     }
+
+    void spend() { operations_left -= std::min(operations_left, evaluator.operations_used() + 1); }
 
     // A curvature is of a gradient without jumps; of others it is not looked for, only told as it comes.
     bool is_wanted(size_t bound) const

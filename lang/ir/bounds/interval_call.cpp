@@ -10,6 +10,8 @@ namespace haptel::ir {
 namespace {
 
 constexpr uint64_t short_body = 16; // instructions
+// What a call costs besides its arguments, its results and what is done inside, in operations, where it varies.
+constexpr uint64_t operations_of_call = 2;
 
 Interval declared_value(const Facts& facts, bool may_be_nan)
 {
@@ -100,7 +102,7 @@ const Activity& IntervalEvaluator::tangents_of(uint32_t index, std::span<const V
     const Function& function = module.functions[index];
     std::vector<bool> given;
     for (const Variation& argument : arguments) given.push_back(argument.has_tangent);
-    const auto [known, is_new] = activities.try_emplace({index, given}, function.value_types.size(), 1);
+    const auto [known, is_new] = activities[index].try_emplace(given, function.value_types.size(), 1);
     Activity& activity = known->second;
     if (!is_new) return activity;
     for (size_t p = 0; p < given.size(); ++p)
@@ -114,11 +116,16 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     const Function& function = module.functions[index];
     if (depth >= depth_max || left == 0) return unknown(function, function.body.yields, span);
     ++depth;
+    if (varying) of_calls += operations_of_call + function.parameters.size() + function.body.yields.size();
     const size_t count = function.value_types.size();
     std::vector<Interval> values;
+    std::vector<Variation> variations;
     if (!spare_values.empty()) values = std::move(spare_values.back()), spare_values.pop_back();
     values.assign(count, no_value);
-    Frame frame{function, std::move(values), std::vector<Variation>(varying ? count : 0), structure_of(index),
+    if (varying && !spare_variations.empty())
+        variations = std::move(spare_variations.back()), spare_variations.pop_back();
+    variations.assign(varying ? count : 0, Variation{});
+    Frame frame{function, std::move(values), std::move(variations), structure_of(index),
                 varying ? tangents_of(index, arguments.variations) : no_tangents};
     store(frame, function.parameters, arguments);
     const std::optional<Span> outside = user;
@@ -128,6 +135,7 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     --depth;
     Results results = gather(frame, function.body.yields);
     spare_values.push_back(std::move(frame.values));
+    if (varying) spare_variations.push_back(std::move(frame.variations));
     if (function.is_library)
         for (Variation& variation : results.variations) variation.cause = {span, {}, true}, variation.kink = 0;
     return results;

@@ -31,7 +31,11 @@ Variation variation_of_input(const BoundsBox& box, Input input, Span span)
 } // namespace
 
 IntervalEvaluator::IntervalEvaluator(const Module& whole, uint64_t operations)
-    : module(whole), limit(operations), structures(whole.functions.size()), dependences(whole)
+    : module(whole)
+    , limit(operations)
+    , structures(whole.functions.size())
+    , dependences(whole)
+    , activities(whole.functions.size())
 {
 }
 
@@ -40,6 +44,7 @@ std::vector<Interval> IntervalEvaluator::run(uint32_t function, std::span<const 
 {
     box = where;
     left = limit;
+    of_calls = 0;
     return values_inside(function, {arguments.begin(), arguments.end()}, {});
 }
 
@@ -47,6 +52,7 @@ IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const 
 {
     box = &where;
     left = limit;
+    of_calls = 0;
     varying = true;
     seams.reset();
     with_curvature = sought >= Sought::curvature;
@@ -65,8 +71,12 @@ IntervalEvaluator::Results IntervalEvaluator::gather(const Frame& frame, std::sp
     Results results;
     results.values.reserve(values.size());
     for (Value value : values) results.values.push_back(frame.values[value.index]);
-    if (varying)
-        for (Value value : values) results.variations.push_back(frame.variation(value));
+    if (!varying) return results;
+    results.variations.reserve(values.size());
+    for (Value value : values) {
+        results.variations.push_back(frame.variations[value.index]);
+        results.variations.back().has_tangent = frame.tangents.any(value);
+    }
     return results;
 }
 

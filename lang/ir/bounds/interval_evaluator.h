@@ -31,7 +31,8 @@ public:
 
     // `box` may be null for functions that are not entries.
     std::vector<Interval> run(uint32_t function, std::span<const Interval> arguments, const BoundsBox* box);
-    uint64_t operations_used() const { return limit - left; }
+    // By the last run. More than the limit where calls make a large part of it: they take time, and decide no result.
+    uint64_t operations_used() const { return limit - left + of_calls; }
 
     // Values, and how each varies with the point. `variations` is empty where they were not asked for.
     struct Results {
@@ -70,13 +71,6 @@ public:
         const Structure& structure;
         const Activity& tangents; // which values have one
         const std::vector<const Instruction*>& makers = structure.makers;
-
-        Variation variation(Value value) const
-        {
-            Variation known = variations[value.index];
-            known.has_tangent = tangents.any(value);
-            return known;
-        }
     };
 
 private:
@@ -84,7 +78,7 @@ private:
 
     const Module& module;
     const uint64_t limit;
-    uint64_t left = 0;
+    uint64_t left = 0, of_calls = 0;
     uint32_t depth = 0; // blocks and calls inside each other
     bool varying = false, with_curvature = true;
     PartialRules rules;
@@ -99,10 +93,12 @@ private:
     std::vector<Structure> structures;       // by function; filled when first needed
 
     Dependences dependences;
-    std::map<std::pair<uint32_t, std::vector<bool>>, Activity>
-        activities; // by function and which parameters have tangents
+    std::vector<std::map<std::vector<bool>, Activity>> activities; // by function and which parameters have tangents
     const Activity no_tangents{0, 0};
-    std::vector<std::vector<Interval>> spare_values; // of frames that are done: calls are many, and short
+    // Of frames that are done, and of operands: calls and operations are many, and short.
+    std::vector<std::vector<Interval>> spare_values;
+    std::vector<std::vector<Variation>> spare_variations;
+    std::array<Variation, operands_max> operand_variations;
 
     std::map<uint32_t, bool> short_functions; // asked so far
 

@@ -106,10 +106,11 @@ Partials IntervalEvaluator::spline_partials(std::span<const Interval> operands) 
 Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made, Op op,
                                           std::span<const Interval> operands, const Interval& result)
 {
-    Variation variations[operands_max];
+    const std::span<Variation> variations{operand_variations.data(), operands.size()};
     uint32_t moving = 0, differentiated = 0; // the code does not know what these intervals know, and takes part in more
     for (size_t i = 0; i < operands.size(); ++i) {
-        variations[i] = frame.variation(made.operands[i]);
+        variations[i] = frame.variations[made.operands[i].index];
+        variations[i].has_tangent = frame.tangents.any(made.operands[i]);
         const bool stays_between_jumps = variations[i].slope == 0 && variations[i].curvature == 0;
         if (variations[i].is_active && !stays_between_jumps) moving |= 1u << i;
         if (variations[i].is_active || variations[i].has_tangent) differentiated |= 1u << i;
@@ -142,9 +143,8 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
             partials = spline_partials(operands);
         else if (is_of_reals(op_info(op)))
             partials = rules.of(op, operands, differentiated, with_curvature);
-        const std::span<const Variation> all{variations, operands.size()};
-        variation = chain(op, operands, all, partials, with_curvature);
-        const bool is_new = std::ranges::none_of(all, &Variation::may_fault);
+        variation = chain(op, operands, variations, partials, with_curvature);
+        const bool is_new = std::ranges::none_of(variations, &Variation::may_fault);
         const bool is_part = frame.structure.is_part_of_result[made.results[0].index];
         if (variation.may_fault && is_new && is_part && result.is_finite())
             note_fault(made, op, operands, Undefined::Why::derivative);

@@ -1,8 +1,7 @@
 #include "lang/ir/bounds/polynomial.h"
 
-#include "lang/ir/bounds/interval_shape.h"
-
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +11,6 @@ namespace {
 // How far operations are written out: enough for the noise of four corners, and for the edges of a smoothstep.
 constexpr uint32_t steps_max = 18;
 constexpr size_t terms_max = 32;
-constexpr double least_magnitude = 1e-250; // of a coefficient: far above where numbers lose their digits
 
 const double* constant_of(const Instruction* made)
 {
@@ -31,30 +29,31 @@ bool is_written_out(std::span<const Instruction* const> makers, const Instructio
     return divisor && *divisor != 0;
 }
 
-// Whether the two are cosine and sine of one angle.
-bool is_circle(const Instruction* a, const Instruction* b)
+// The op of the sine that is on a circle with such a cosine; nothing if it is none.
+std::optional<Op> sine_beside(const Instruction* made)
 {
-    const auto* cosine = a ? std::get_if<Operation>(&a->kind) : nullptr;
-    const auto* sine = b ? std::get_if<Operation>(&b->kind) : nullptr;
-    if (!cosine || !sine || a->operands[0] != b->operands[0]) return false;
-    return (cosine->op == Op::cos && sine->op == Op::sin) || (cosine->op == Op::costurn && sine->op == Op::sinturn);
+    const auto* operation = made ? std::get_if<Operation>(&made->kind) : nullptr;
+    if (!operation) return std::nullopt;
+    return operation->op == Op::cos       ? std::optional(Op::sin)
+           : operation->op == Op::costurn ? std::optional(Op::sinturn)
+                                          : std::nullopt;
 }
 
 } // namespace
 
+// Of all parts but one alone each is to the power of 1 at most, for range() knows no others.
 struct Polynomial::Term {
     Coefficient times;
-    std::array<uint8_t, parts_max> powers{}; // by parts
-
-    bool operator==(const Term& other) const { return powers == other.powers; }
+    uint32_t of; // which parts, a bit each; of one alone: its power
 };
 
 // Which values the whole is made of, as more and more of it is written out, the latest first.
 class Polynomial::Expansion {
-    using Terms = std::vector<Term>;
-
 public:
-    Expansion(std::span<const Instruction* const> all_makers, Value value) : makers(all_makers), whole(value) {}
+    Expansion(std::span<const Instruction* const> all_makers, Value value) : makers(all_makers), whole(value)
+    {
+        terms.reserve(steps_max * (terms_max + 3));
+    }
 
     // Writes one more value out; false where there is none left, or too many are met.
     bool step()
@@ -82,54 +81,25 @@ public:
         return more + (circle().has_value() ? 1 : 0);
     }
 
-    // As it is written out so far; nothing where that is too long.
-    std::optional<Polynomial> polynomial() const
+    // As it is written out so far; nothing where that is too long, or to a power that range() does not know.
+    std::optional<Polynomial> polynomial()
     {
-        std::vector<Value> parts;
+        parts.clear();
         for (const Met& one : met) parts.push_back(one.value);
         const auto on_circle = circle();
         if (on_circle) {
             std::swap(parts[0], parts[on_circle->first]);
             std::ranges::iter_swap(parts.begin() + 1, std::ranges::find(parts, met[on_circle->second].value));
         }
-        // Operands before what is made of them.
-        std::vector<Value> order = written;
-        std::ranges::sort(order, {}, &Value::index);
-        std::vector<std::pair<Value, Terms>> known;
-        const auto terms_of = [&](Value value) -> Terms {
-            if (const double* constant = constant_of(makers[value.index]))
-                return {Term{{*constant, std::fabs(*constant)}, {}}};
-            const auto part = std::ranges::find(parts, value);
-            if (part != parts.end()) {
-                Term term{{1, 1}, {}};
-                term.powers[static_cast<size_t>(part - parts.begin())] = 1;
-                return {term};
-            }
-            return std::ranges::find(known, value, &std::pair<Value, Terms>::first)->second;
-        };
-        for (const Value value : order) {
-            const Instruction& maker = *makers[value.index];
-            const Op op = std::get<Operation>(maker.kind).op;
-            Terms terms = op == Op::neg ? Terms{} : terms_of(maker.operands[0]);
-            const Terms other = terms_of(maker.operands.back());
-            if (op == Op::mul)
-                terms = product(terms, other);
-            else if (op == Op::div)
-                for (Term& term : terms) {
-                    term.times.factor /= other[0].times.factor;
-                    term.times.magnitude = scaled(term.times.magnitude, 1 / other[0].times.magnitude);
-                }
-            else
-                add(terms, other, op == Op::add ? 1 : -1);
-            if (terms.size() > terms_max || std::ranges::any_of(terms, is_lost)) return std::nullopt;
-            known.emplace_back(value, std::move(terms));
-        }
+        const std::optional<Terms> all = write_out();
+        if (!all) return std::nullopt;
+        const std::span<const Term> found = std::span(terms).subspan(all->begin, all->count);
         Polynomial made;
-        if (!on_circle || !made.set(parts, known.back().second, 2)) {
+        if (!on_circle || !made.set(parts, found, 2)) {
             made = {}; // a circle among more than there is room for
-            if (!made.set(parts, known.back().second, 0)) return std::nullopt;
+            if (!made.set(parts, found, 0)) return std::nullopt;
         }
-        made.operations = static_cast<uint32_t>(written.size() + known.back().second.size() + degree_max);
+        made.operations = static_cast<uint32_t>(written.size() + found.size() + degree_max);
         return made;
     }
 
@@ -139,15 +109,83 @@ private:
         Value value;
         uint32_t times = 1;
     };
+    struct Terms { // of a value, in `terms`
+        size_t begin, count;
+    };
 
-    static void add(Terms& to, const Terms& from, double sign)
+    // What is written out, operands before what is made of them: the terms of the last, the whole.
+    std::optional<Terms> write_out()
     {
-        for (const Term& term : from) {
-            const auto same = std::ranges::find(to, term);
-            Coefficient& sum = (same != to.end() ? *same : to.emplace_back(Term{{}, term.powers})).times;
-            sum.factor += sign * term.times.factor;
-            sum.magnitude += term.times.magnitude;
+        terms.clear();
+        known.clear();
+        order = written;
+        std::ranges::sort(order, {}, &Value::index);
+        for (const Value value : order) {
+            const Instruction& maker = *makers[value.index];
+            const Op op = std::get<Operation>(maker.kind).op;
+            const Terms first = terms_of(maker.operands[0]), second = terms_of(maker.operands.back());
+            const size_t begin = terms.size();
+            if (op == Op::mul) {
+                if (!multiply(first, second)) return std::nullopt;
+            } else if (op == Op::div) {
+                const Coefficient by = terms[second.begin].times;
+                for (size_t i = 0; i < first.count; ++i) {
+                    const auto [times, of] = terms[first.begin + i];
+                    terms.push_back({{times.factor / by.factor, scaled(times.magnitude, 1 / by.magnitude)}, of});
+                }
+            } else {
+                if (op != Op::neg) add(begin, first, 1);
+                add(begin, second, op == Op::add ? 1 : -1);
+            }
+            const auto made = std::span(terms).subspan(begin);
+            if (made.size() > terms_max || std::ranges::any_of(made, is_lost)) return std::nullopt;
+            known.push_back({begin, made.size()});
         }
+        return known.back();
+    }
+
+    Terms terms_of(Value value)
+    {
+        if (const auto before = std::ranges::find(order, value); before - order.begin() < std::ssize(known))
+            return known[static_cast<size_t>(before - order.begin())];
+        const double* constant = constant_of(makers[value.index]);
+        const auto part = static_cast<size_t>(std::ranges::find(parts, value) - parts.begin());
+        terms.push_back(constant ? Term{{*constant, std::fabs(*constant)}, 0} : Term{{1, 1}, uint32_t{1} << part});
+        return {terms.size() - 1, 1};
+    }
+
+    // To what is being made, from `begin` on.
+    void add(size_t begin, Coefficient times, uint32_t of)
+    {
+        const auto same = std::ranges::find(terms.begin() + static_cast<ptrdiff_t>(begin), terms.end(), of, &Term::of);
+        Coefficient& sum = (same != terms.end() ? *same : terms.emplace_back(Term{{}, of})).times;
+        sum.factor += times.factor;
+        sum.magnitude += times.magnitude;
+    }
+
+    void add(size_t begin, Terms from, double sign)
+    {
+        for (size_t i = 0; i < from.count; ++i) {
+            const auto [times, of] = terms[from.begin + i];
+            add(begin, {sign * times.factor, times.magnitude}, of);
+        }
+    }
+
+    // Behind all terms; false where there are too many of them, or powers that range() does not know.
+    bool multiply(Terms a, Terms b)
+    {
+        const bool is_of_one = parts.size() == 1;
+        const size_t begin = terms.size();
+        for (size_t i = 0; i < a.count; ++i)
+            for (size_t k = 0; k < b.count; ++k) {
+                const Term left = terms[a.begin + i], right = terms[b.begin + k];
+                const uint32_t of = is_of_one ? left.of + right.of : left.of | right.of;
+                if (is_of_one ? of > degree_max : (left.of & right.of) != 0) return false;
+                add(begin,
+                    {right.times.factor * left.times.factor, scaled(right.times.magnitude, left.times.magnitude)}, of);
+                if (terms.size() > begin + terms_max) return false;
+            }
+        return true;
     }
 
     // Infinite where it is so small that what it was made of may have been lost, or too large.
@@ -158,29 +196,19 @@ private:
     }
     static bool is_lost(const Term& term) { return !std::isfinite(term.times.magnitude); }
 
-    static Terms product(const Terms& a, const Terms& b)
-    {
-        Terms all;
-        for (const Term& left : a) {
-            Terms line = b;
-            for (Term& term : line) {
-                term.times.factor *= left.times.factor;
-                term.times.magnitude = scaled(term.times.magnitude, left.times.magnitude);
-                for (size_t i = 0; i < parts_max; ++i)
-                    term.powers[i] = static_cast<uint8_t>(std::min(term.powers[i] + left.powers[i], 255));
-            }
-            add(all, line, 1);
-            if (all.size() > terms_max) break;
-        }
-        return all;
-    }
-
     // Where in `met` a cosine is, and its sine.
     std::optional<std::pair<size_t, size_t>> circle() const
     {
-        for (size_t i = 0; i < met.size(); ++i)
-            for (size_t j = 0; j < met.size(); ++j)
-                if (is_circle(makers[met[i].value.index], makers[met[j].value.index])) return std::pair{i, j};
+        for (size_t i = 0; i < met.size(); ++i) {
+            const Instruction* cosine = makers[met[i].value.index];
+            const std::optional<Op> wanted = sine_beside(cosine);
+            for (size_t j = 0; wanted && j < met.size(); ++j) {
+                const Instruction* sine = makers[met[j].value.index];
+                const auto* operation = sine ? std::get_if<Operation>(&sine->kind) : nullptr;
+                if (operation && operation->op == *wanted && sine->operands[0] == cosine->operands[0])
+                    return std::pair{i, j};
+            }
+        }
         return std::nullopt;
     }
 
@@ -198,52 +226,44 @@ private:
     const Value whole;
     std::vector<Value> written;
     std::vector<Met> met;
+    // Of the latest polynomial; kept for the next one, as many are made and few are the last.
+    std::vector<Value> parts, order;
+    std::vector<Term> terms;
+    std::vector<Terms> known; // by `order`
 };
 
 // Takes the terms, where range() knows how: of powers of one part, or of products of different ones. The first
 // `of_circle` (two, or none) of all are a cosine and its sine.
 bool Polynomial::set(std::span<const Value> all, std::span<const Term> terms, size_t of_circle)
 {
-    const auto is_in = [&](const Term& term) {
-        std::vector<size_t> in;
-        for (size_t i = 0; i < all.size(); ++i)
-            if (term.powers[i] > 0) in.push_back(i);
-        return in;
-    };
-    std::array<uint8_t, parts_max> bit{}; // of those that multiply others, from 1 on
-    has_circle = of_circle > 0;
-    for (size_t i = 0; i < of_circle; ++i) {
-        parts.push_back(all[i]);
-        bit[i] = static_cast<uint8_t>(parts.size());
-    }
-    for (const Term& term : terms) {
-        const std::vector<size_t> in = is_in(term);
-        for (const size_t i : in) {
-            is_of_powers |= term.powers[i] > 1;
-            if (in.size() < 2 || bit[i] > 0) continue;
-            parts.push_back(all[i]);
-            bit[i] = static_cast<uint8_t>(parts.size());
-        }
-    }
-    if (is_of_powers) {
-        if (all.size() > 1) return false;
+    const auto is_squared = [](const Term& term) { return term.of > 1; };
+    if (all.size() == 1 && std::ranges::any_of(terms, is_squared)) {
+        is_of_powers = true;
         parts = {all[0]};
         for (const Term& term : terms) {
-            if (term.powers[0] > degree_max) return false;
-            coefficients.resize(std::max<size_t>(coefficients.size(), term.powers[0] + 1u));
-            coefficients[term.powers[0]] = term.times;
+            coefficients.resize(std::max<size_t>(coefficients.size(), term.of + 1));
+            coefficients[term.of] = term.times;
         }
         return true;
     }
+    std::array<uint32_t, parts_max> bit{}; // of those that multiply others, or are of the circle
+    const auto take = [&](size_t part) {
+        if (bit[part] == 0) bit[part] = uint32_t{1} << parts.size(), parts.push_back(all[part]);
+    };
+    const auto for_each_part = [](uint32_t of, const auto& look) {
+        for (; of != 0; of &= of - 1) look(static_cast<size_t>(std::countr_zero(of)));
+    };
+    has_circle = of_circle > 0;
+    for (size_t i = 0; i < of_circle; ++i) take(i);
+    for (const Term& term : terms)
+        if (!std::has_single_bit(term.of)) for_each_part(term.of, take);
     if (parts.size() > corners_max) return false;
     coefficients.resize(size_t{1} << parts.size());
     for (const Term& term : terms) {
-        const std::vector<size_t> in = is_in(term);
-        size_t product = 0;
-        for (const size_t i : in)
-            if (bit[i] > 0) product |= size_t{1} << (bit[i] - 1);
-        if (in.size() == 1 && product == 0)
-            alone.push_back({all[in[0]], term.times});
+        uint32_t product = 0;
+        for_each_part(term.of, [&](size_t part) { product |= bit[part]; });
+        if (term.of != 0 && product == 0)
+            alone.push_back({all[static_cast<size_t>(std::countr_zero(term.of))], term.times});
         else
             coefficients[product] = term.times;
     }
@@ -257,134 +277,14 @@ std::optional<Polynomial> Polynomial::of(std::span<const Instruction* const> mak
     std::optional<Polynomial> best;
     uint32_t most_shared = 0;
     while (expansion.step()) {
-        if (expansion.shared() <= most_shared) continue;
+        const uint32_t shared = expansion.shared();
+        if (shared <= most_shared) continue;
         std::optional<Polynomial> made = expansion.polynomial();
         if (!made) continue;
-        most_shared = expansion.shared();
+        most_shared = shared;
         best = std::move(made);
     }
     return best;
-}
-
-// In the form of Bernstein it lies between its coefficients, of which the first and the last are values of it; of
-// halves they are nearer (de Casteljau).
-Interval Polynomial::of_one_part(const Interval& at) const
-{
-    using Numbers = std::array<double, degree_max + 1>;
-    Numbers powers{}; // of s, where the part is minimum + width * s
-    const size_t degree = coefficients.size() - 1;
-    const double width = at.maximum - at.minimum;
-    for (size_t power = 0; power <= degree; ++power) {
-        double share = coefficients[power].factor; // times the binomial of power and i
-        for (size_t i = 0; i <= power; ++i) {
-            double scaled = share;
-            for (size_t k = 0; k < power; ++k) scaled *= k < i ? width : at.minimum;
-            powers[i] += scaled;
-            share *= static_cast<double>(power - i) / static_cast<double>(i + 1);
-        }
-    }
-    Numbers bernstein{};
-    for (size_t j = 0; j <= degree; ++j) {
-        double ratio = 1; // of binomials: j over i, degree over i
-        for (size_t i = 0; i <= j; ++i) {
-            bernstein[j] += ratio * powers[i];
-            ratio *= static_cast<double>(j - i) / static_cast<double>(degree - i);
-        }
-    }
-    Interval found = no_value;
-    const auto look = [&](const auto& self, Numbers left, int halvings) -> void {
-        const auto [least, most] = std::minmax_element(left.begin(), left.begin() + static_cast<ptrdiff_t>(degree) + 1);
-        const double ends[] = {std::min(left[0], left[degree]), std::max(left[0], left[degree])};
-        if (halvings == 0 || (*least == ends[0] && *most == ends[1])) {
-            found = join(found, {*least, *most});
-            return;
-        }
-        Numbers right{};
-        for (size_t k = 0; k <= degree; ++k) {
-            right[degree - k] = left[degree];
-            for (size_t i = degree; i > k; --i) left[i] = (left[i] + left[i - 1]) / 2;
-        }
-        self(self, left, halvings - 1);
-        self(self, right, halvings - 1);
-    };
-    look(look, bernstein, 4);
-    return found;
-}
-
-// Linear in each part, it is least and greatest where each is: at an end. Part by part the coefficients become values
-// at both. Of a circle, which is the first and hence the last that is left, c + a cos + b sin + d cos sin is within
-// hypot(a, b) + |d| / 2 of c.
-Interval Polynomial::of_corners(std::span<const Interval> values) const
-{
-    std::array<double, size_t{1} << corners_max> corner;
-    for (size_t i = 0; i < coefficients.size(); ++i) corner[i] = coefficients[i].factor;
-    Interval circle{-infinity, infinity};
-    for (size_t k = parts.size(); k-- > 0;) {
-        if (k == 1 && has_circle) {
-            circle = no_value;
-            for (size_t i = 0; i < coefficients.size(); i += 4) {
-                const double radius = std::hypot(corner[i + 1], corner[i + 2]) + std::fabs(corner[i + 3]) / 2;
-                circle = join(circle, {corner[i] - radius, corner[i] + radius});
-            }
-        }
-        const Interval& at = values[parts[k].index];
-        for (size_t i = 0, bit = size_t{1} << k; i < coefficients.size(); ++i) {
-            if (i & bit) continue;
-            const double with = corner[i | bit], without = corner[i];
-            corner[i] = without + with * at.minimum;
-            corner[i | bit] = without + with * at.maximum;
-        }
-    }
-    const auto [least, most] = std::minmax_element(corner.begin(), corner.begin() + std::ssize(coefficients));
-    Interval all{std::max(*least, circle.minimum), std::min(*most, circle.maximum)};
-    for (const auto& [part, times] : alone) {
-        const Interval& at = values[part.index];
-        const double a = times.factor * at.minimum, b = times.factor * at.maximum;
-        all = {all.minimum + std::min(a, b), all.maximum + std::max(a, b)};
-    }
-    return all;
-}
-
-// At least the sum of all that is added up on the way, without signs.
-double Polynomial::magnitude(std::span<const Interval> values) const
-{
-    double sum = 0;
-    if (is_of_powers) {
-        const Interval& at = values[parts[0].index];
-        const double size = std::fabs(at.minimum) + (at.maximum - at.minimum);
-        for (size_t i = coefficients.size(); i-- > 0;) sum = sum * size + coefficients[i].magnitude;
-        return sum;
-    }
-    std::array<double, size_t{1} << corners_max> product;
-    for (size_t i = 0; i < coefficients.size(); ++i) product[i] = coefficients[i].magnitude;
-    for (size_t k = parts.size(); k-- > 0;)
-        for (size_t i = 0, bit = size_t{1} << k; i < bit; ++i)
-            product[i] += product[i | bit] * size_of(values[parts[k].index]);
-    sum = product[0];
-    for (const auto& [part, times] : alone) sum += times.magnitude * size_of(values[part.index]);
-    return sum;
-}
-
-std::optional<Interval> Polynomial::range(std::span<const Interval> values) const
-{
-    const auto is_finite = [&](Value part) { return values[part.index].is_finite(); };
-    if (!std::ranges::all_of(parts, is_finite) || !std::ranges::all_of(alone, is_finite, &Alone::part))
-        return std::nullopt;
-    // Each operation is off by half a unit in the last place of what is added up, at most; or of the least number, and
-    // that may be multiplied by all that there is, and by what makes the least coefficient on the way the one at the
-    // end.
-    double most = 1;
-    for (const Coefficient& times : coefficients) most = std::max(most, times.magnitude);
-    for (const Alone& one : alone) most = std::max(most, one.times.magnitude);
-    for (const Value part : parts)
-        for (size_t i = 0; i < (is_of_powers ? coefficients.size() : 1); ++i)
-            most *= std::max(1.0, size_of(values[part.index]));
-    using Limits = std::numeric_limits<double>;
-    const double lost = Limits::denorm_min() / least_magnitude * most;
-    const double slack = 4.0 * operations * (Limits::epsilon() * magnitude(values) + lost);
-    if (!std::isfinite(slack)) return std::nullopt;
-    const Interval found = is_of_powers ? of_one_part(values[parts[0].index]) : of_corners(values);
-    return Interval{found.minimum - slack, found.maximum + slack};
 }
 
 } // namespace haptel::ir

@@ -26,8 +26,9 @@ public:
 
 private:
     static constexpr size_t parts_max = 16;
-    static constexpr size_t degree_max = 8;  // of one part alone
-    static constexpr size_t corners_max = 6; // parts that multiply others: two ends of each are looked at
+    static constexpr size_t degree_max = 8;           // of one part alone
+    static constexpr size_t corners_max = 6;          // parts that multiply others: two ends of each are looked at
+    static constexpr double least_magnitude = 1e-250; // of a coefficient: far above where numbers lose their digits
 
     struct Coefficient {
         double factor = 0, magnitude = 0; // the latter: the sum of what the former was made of, without signs
