@@ -174,7 +174,7 @@ TEST_CASE(
     WARN(stage.slot().newest_serial() - 1 << " bindings of " << set << " values; force " << turned.force_min_n << " .. "
                                           << turned.force_max_n << " N, largest step " << turned.step_max_n
                                           << " N in a period");
-    CHECK(stage.slot().newest_serial() > 1 + times); // each at once, and most again
+    CHECK(stage.slot().newest_serial() > 5); // where there is time, each at once and most again
     CHECK(turned.report.allocations_in_tick == 0);
     CHECK(turned.report.faults == 0);
     CHECK(turned.force_max_n - turned.force_min_n > 0.05);
