@@ -26,6 +26,9 @@ using Clock = std::chrono::steady_clock;
 
 // Looks at the files unasked: for what inotify does not tell, and for folders that were not there.
 constexpr auto unasked = 1s;
+// A value is felt at once, and by a range of heights that takes longer to find when none has come for so long: each
+// would be late that came meanwhile.
+constexpr auto rest = 100ms;
 // Between deleting the old file and making the new one, some editors take a while.
 constexpr auto absence_forgiven = 500ms;
 
@@ -35,6 +38,12 @@ struct UsedPicture {
     bool operator==(const UsedPicture&) const = default;
 };
 
+bool is_same_range(const TextureBinding& one, const TextureBinding& other)
+{
+    return one.facts.height_min_m == other.facts.height_min_m && one.facts.height_max_m == other.facts.height_max_m &&
+           std::ranges::equal(one.shoulder_m, other.shoulder_m);
+}
+
 // The one thread that compiles for live textures: waits for files to change and tells its clients.
 class CompileThread {
 public:
@@ -42,6 +51,7 @@ public:
         std::mutex at_work;            // held during an update
         std::function<void()> update;  // looks whether files have changed, and acts; throws nothing. Null: no more
         std::set<std::string> watched; // files, as of the last update
+        std::optional<Clock::time_point> due; // of the next update, at the latest
     };
 
     // The one of this process; it ends with its last owner.
@@ -93,7 +103,7 @@ private:
             if (now < due && (!is_woken || settling.is_awaited())) continue;
             update_clients();
             settling.read();
-            due = Clock::now() + unasked;
+            due = std::min(Clock::now() + unasked, clients_due);
         }
     }
 
@@ -115,11 +125,13 @@ private:
         const std::vector<std::shared_ptr<Place>> all = places;
         lock.unlock();
         std::set<std::string> files;
+        clients_due = Clock::time_point::max();
         for (const auto& place : all) {
             const std::lock_guard at_work(place->at_work);
             if (!place->update) continue;
             place->update();
             files.insert(place->watched.begin(), place->watched.end());
+            clients_due = std::min(clients_due, place->due.value_or(clients_due));
         }
         watch.watch(files);
     } catch (...) {
@@ -127,6 +139,7 @@ private:
     }
 
     FileWatch watch;
+    Clock::time_point clients_due = Clock::time_point::max(); // of the next of their updates, at the latest
     const int wake_event = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
     std::mutex places_mutex; // never held while a client is at work: it may add others
     std::vector<std::shared_ptr<Place>> places;
@@ -148,6 +161,7 @@ public:
         if (in_hand && in_hand->program) pictures_in_hand = pictures_of(*in_hand->program);
         place->watched = {reference.file};
         place->update = [this] { update(); };
+        place->due = Clock::now(); // to know the range of what is in the hand
         thread->add(place);
     }
     ~Client()
@@ -227,11 +241,20 @@ private:
         return fitting;
     }
 
-    void make_and_publish(const std::shared_ptr<const CompiledTextures>& compiled, bool of_values_alone)
+    void make_and_publish(bool of_values_alone)
     {
-        std::string said = compiled->rendered();
-        const TextureRequest fitting = request_for(*compiled->program, said);
-        TextureResult result = make_binding(program_of(compiled), reference.texture, fitting);
+        std::string said = usable->rendered();
+        const TextureRequest fitting = request_for(*usable->program, said);
+        const auto program = program_of(usable);
+        if (!of_values_alone) complete.reset();
+        TextureResult result;
+        if (complete) result = make_binding_at_once(program, reference.texture, fitting, *complete);
+        at_once = result.binding;
+        if (at_once) place->due = Clock::now() + rest;
+        if (!at_once && result.diagnostics.empty()) {
+            result = make_binding(program, reference.texture, fitting);
+            if (result.binding) complete = result.binding;
+        }
         said += about_file(reference.file, result.diagnostics);
         if (!result.binding) {
             if (of_values_alone) request.parameters = parameters_before; // or the next value would be refused with them
@@ -240,6 +263,17 @@ private:
         if (of_values_alone && callbacks.publish_values) return callbacks.publish_values(std::move(*result.binding));
         callbacks.publish(std::move(*result.binding));
         report(std::move(said));
+    }
+
+    // Finds the range of heights with patience: what is in the hand has another where it was made at once.
+    void complete_range()
+    {
+        std::string notes; // were told when the values came
+        const TextureRequest fitting = request_for(*usable->program, notes);
+        complete = make_binding(program_of(usable), reference.texture, fitting).binding;
+        const std::optional<TextureBinding> felt = std::exchange(at_once, std::nullopt);
+        if (!felt || !complete || is_same_range(*felt, *complete)) return;
+        (callbacks.publish_values ? callbacks.publish_values : callbacks.publish)(*complete);
     }
 
     void report(std::string text)
@@ -260,12 +294,14 @@ private:
 
     void follow()
     {
-        const bool edited = take_edits();
+        const bool edited = take_edits(), is_at_rest = place->due && *place->due <= Clock::now();
+        if (is_at_rest) place->due.reset();
         const auto compiled = cache->load(reference.file);
         watch(*compiled);
         if (!compiled->program) {
             in_hand = compiled;
-            if (edited && usable) make_and_publish(usable, true); // a slider works on while the file is broken
+            if (edited && usable) make_and_publish(true); // a slider works on while the file is broken
+            if (!edited && usable && is_at_rest) complete_range();
             if (!is_forgiven(compiled->has_finding("unreadable-file"))) report(compiled->rendered());
             return;
         }
@@ -276,7 +312,10 @@ private:
         const bool changed = compiled != in_hand || pictures != pictures_in_hand;
         in_hand = usable = compiled;
         pictures_in_hand = std::move(pictures);
-        if (changed || edited) make_and_publish(usable, !changed);
+        if (changed || edited)
+            make_and_publish(!changed);
+        else if (is_at_rest)
+            complete_range();
     }
 
     void failed(std::string_view why) noexcept
@@ -305,6 +344,8 @@ private:
     std::shared_ptr<const CompiledTextures> in_hand; // what was looked at last; broken ones too
     std::shared_ptr<const CompiledTextures> usable;  // the last one that has a program
     std::vector<UsedPicture> pictures_in_hand;       // as of the last look
+    std::optional<TextureBinding> complete; // of `usable`, with a range found with patience: of the values of now, or
+    std::optional<TextureBinding> at_once;  // if it is there, of those before
     std::optional<Clock::time_point> absent_since;
     std::string reported; // the last report, not to be repeated
 

@@ -192,10 +192,9 @@ void write(std::vector<uint64_t>& block, const ir::Parameter& parameter, const A
     }
 }
 
-} // namespace
-
-TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view name,
-                           const TextureRequest& request, For use, FoundHeights* found)
+// `before`: at once, after that one; null: with patience.
+TextureResult bound(const std::shared_ptr<const CompiledProgram>& program, std::string_view name,
+                    const TextureRequest& request, For use, FoundHeights* found, const TextureBinding* before)
 {
     Findings findings;
     const auto refuse = [&] { return TextureResult{std::nullopt, findings.errors}; };
@@ -222,27 +221,45 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
         views.push_back(argument.image ? argument.image.get() : &flat_image());
     }
     const auto facts_with = [&](const std::vector<const ir::SplineImage*>& seen, Bounded what,
-                                LikelyPlaces* places = nullptr) {
+                                FindPlaces* places = nullptr) {
         return facts_over_box(program->module(), source, values, seen, head, request, what, places);
     };
-    const bool is_felt = use == For::hand;
-    LikelyPlaces places;
-    TextureBinding binding{storage, texture, storage->block.data(),
-                           facts_with(views, is_felt ? Bounded::heights : Bounded::all, &places)};
+    const Bounded bounded = use == For::figures ? Bounded::all : before ? Bounded::heights_at_once : Bounded::heights;
+    FindPlaces places;
+    TextureBinding binding{storage, texture, storage->block.data(), facts_with(views, bounded, &places)};
     if (const std::string slow = too_slow(*program, binding, request); !slow.empty()) {
         findings.error(slow, "fewer octaves or terms, or a lower rate_hz");
         return refuse();
     }
-    if (is_felt && texture->height_gradient) {
-        const FoundHeights heights = find_heights(binding, request, places);
+    binding.band_limited = is_band_limited(binding, request);
+    if (before) {
+        if (!stretch_envelope(binding, *before, request)) return {};
+        return {std::move(binding), std::move(findings.remarks)};
+    }
+    if (use == For::hand && texture->height_gradient) {
+        const FoundHeights heights =
+            find_heights(binding, request, places, found ? Search::to_the_end : Search::until_clear);
         give_envelope(binding, heights, source, findings);
         if (found) *found = heights;
     }
-    binding.band_limited = is_band_limited(binding, request);
     note_grain(
         source, storage->arguments, views, [&](const auto& seen) { return facts_with(seen, Bounded::heights); },
         findings);
     return {std::move(binding), std::move(findings.remarks)};
+}
+
+} // namespace
+
+TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view name,
+                           const TextureRequest& request, For use, FoundHeights* found)
+{
+    return bound(program, name, request, use, found, nullptr);
+}
+
+TextureResult make_binding_at_once(const std::shared_ptr<const CompiledProgram>& program, std::string_view name,
+                                   const TextureRequest& request, const TextureBinding& before)
+{
+    return bound(program, name, request, For::hand, nullptr, &before);
 }
 
 } // namespace haptel::jit

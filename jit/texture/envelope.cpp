@@ -15,8 +15,9 @@ namespace {
 
 // Operations in all: 10 to 30 ms, however slow the texture is; and calls, of which a third are of climbs.
 constexpr uint64_t operations_most = 4'000'000, calls_least = 48, calls_most = 6000;
-constexpr size_t climbs_most = 8;       // to each end
-constexpr double first_step = 1.0 / 64; // of the box
+constexpr uint64_t operations_of_few = 50'000, calls_of_few = 200; // a quarter of a millisecond
+constexpr size_t climbs_most = 8;                                  // to each end
+constexpr double first_step = 1.0 / 64;                            // of the box
 constexpr double after_success = 1.4, after_failure = 0.3;
 
 // Of an end that is not bounded, or by more than the object's size: where a climb comes so many times as far from the
@@ -33,9 +34,19 @@ constexpr double margin = 0.2, shoulder = 0.2;
 // Nothing was found where all heights were equal; so much is felt of what a search missed.
 constexpr double least_range_m = 1e-6;
 
-class Search {
+constexpr FoundHeights nothing_found{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+// Then it is what is felt; and so it is if more is found.
+bool is_proven_well(const haptel_facts& facts, const FoundHeights& found)
+{
+    return facts.height_max_m - facts.height_min_m <= wide_proof * (found.maximum_m - found.minimum_m) ||
+           (facts.height_min_m >= found.minimum_m - deep_proof_m &&
+            facts.height_max_m <= found.maximum_m + deep_proof_m);
+}
+
+class HeightSearch {
 public:
-    Search(const TextureBinding& of, const TextureRequest& over) : binding(of), request(over)
+    HeightSearch(const TextureBinding& of, const TextureRequest& over) : binding(of), request(over)
     {
         for (int k = 0; k < 3; ++k) side_m = std::max(side_m, request.box_maximum_m[k] - request.box_minimum_m[k]);
         if (!(side_m > 0)) side_m = 1;
@@ -45,7 +56,7 @@ public:
         }
     }
 
-    FoundHeights heights(const LikelyPlaces& places)
+    FoundHeights heights(const FindPlaces& places_of, Search how_far)
     {
         const uint64_t operations = std::max<uint64_t>(binding.facts.operations_max, 1);
         const uint64_t calls = std::clamp(operations_most / operations, calls_least, calls_most);
@@ -54,8 +65,10 @@ public:
         for (uint64_t i = 0; i < 2 * calls / 3; ++i) {
             const haptel_point point = points.next();
             seen.push_back({point, sample(point).height_m, i});
+            if (how_far == Search::until_clear && proof_will_do()) return found;
         }
         const FoundHeights of_places = found;
+        const LikelyPlaces places = places_of();
         const size_t climbs = std::clamp<size_t>(calls / 6 / 20, 1, climbs_most);
         const auto steps = static_cast<int>(calls / 6 / climbs);
         climb(places.highest, 1, steps);
@@ -100,7 +113,14 @@ private:
     const TextureBinding& binding;
     const TextureRequest& request;
     double side_m = 0, uv_side[2];
-    FoundHeights found{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    FoundHeights found = nothing_found;
+
+    // Whatever else is found: nothing that was found is taken back where the proof is no wider than the object.
+    bool proof_will_do() const
+    {
+        return binding.facts.height_max_m - binding.facts.height_min_m <= side_m &&
+               is_proven_well(binding.facts, found);
+    }
 
     haptel_sample sample(const haptel_point& point)
     {
@@ -161,18 +181,34 @@ private:
     }
 };
 
+FoundHeights heights_of_few(const TextureBinding& binding, const TextureRequest& request)
+{
+    const uint64_t operations = std::max<uint64_t>(binding.facts.operations_max, 1);
+    FoundHeights heights = nothing_found;
+    ObjectPoints points(request);
+    for (uint64_t left = std::clamp(operations_of_few / operations, calls_least, calls_of_few); left > 0; --left) {
+        const haptel_point point = points.next();
+        haptel_sample sample = blank_sample;
+        binding.texture->height_gradient(&point, binding.block, &sample);
+        heights.minimum_m = std::min(heights.minimum_m, sample.height_m);
+        heights.maximum_m = std::max(heights.maximum_m, sample.height_m);
+    }
+    return heights;
+}
+
 } // namespace
 
-FoundHeights find_heights(const TextureBinding& binding, const TextureRequest& request, const LikelyPlaces& places)
+FoundHeights find_heights(const TextureBinding& binding, const TextureRequest& request, const FindPlaces& places,
+                          Search how_far)
 {
-    return Search(binding, request).heights(places);
+    return HeightSearch(binding, request).heights(places, how_far);
 }
 
 bool give_envelope(TextureBinding& binding, const FoundHeights& found)
 {
     haptel_facts& facts = binding.facts;
     const double found_m = found.maximum_m - found.minimum_m, proven_m = facts.height_max_m - facts.height_min_m;
-    if (proven_m <= wide_proof * found_m) return false;
+    if (is_proven_well(facts, found)) return false;
     if (found_m == 0 && std::isfinite(proven_m)) return false; // what there is lies where nobody looked
     const double range_m = std::max(found_m, least_range_m), reach_m = (margin + 0.5 * shoulder) * range_m;
     const double least_excess_m = std::max(reach_m, deep_proof_m);
@@ -185,6 +221,28 @@ bool give_envelope(TextureBinding& binding, const FoundHeights& found)
         binding.shoulder_m[1] = shoulder * range_m;
     }
     return binding.shoulder_m[0] > 0 || binding.shoulder_m[1] > 0;
+}
+
+bool stretch_envelope(TextureBinding& binding, const TextureBinding& before, const TextureRequest& request)
+{
+    haptel_facts& facts = binding.facts;
+    if (before.shoulder_m[0] > 0 || before.shoulder_m[1] > 0) {
+        const FoundHeights then = heights_of_few(before, request), now = heights_of_few(binding, request);
+        const double stretch = (now.maximum_m - now.minimum_m) / (then.maximum_m - then.minimum_m);
+        if (!(stretch > 0 && std::isfinite(stretch))) return false;
+        const double minimum_m = now.minimum_m - stretch * (then.minimum_m - before.facts.height_min_m),
+                     maximum_m = now.maximum_m + stretch * (before.facts.height_max_m - then.maximum_m);
+        if (before.shoulder_m[0] > 0 && facts.height_min_m < minimum_m) {
+            facts.height_min_m = minimum_m;
+            binding.shoulder_m[0] = stretch * before.shoulder_m[0];
+        }
+        if (before.shoulder_m[1] > 0 && facts.height_max_m > maximum_m) {
+            facts.height_max_m = maximum_m;
+            binding.shoulder_m[1] = stretch * before.shoulder_m[1];
+        }
+    }
+    const double range_m = facts.height_max_m - facts.height_min_m;
+    return std::isfinite(range_m) && range_m >= 0.5 * (binding.shoulder_m[0] + binding.shoulder_m[1]);
 }
 
 } // namespace haptel::jit

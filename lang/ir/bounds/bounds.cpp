@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <queue>
 
 namespace haptel::ir {
@@ -236,22 +237,25 @@ private:
 };
 
 Interval result_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations,
-                       size_t result, uint64_t operations = operations_of_check, HeightPlaces* places = nullptr)
+                       size_t result, uint64_t operations = operations_of_check,
+                       std::function<HeightPlaces()>* places = nullptr)
 {
-    Bisection bisection(module, texture, box, Goal::result, result, operations);
-    bisection.run(evaluations);
-    const Interval bounds{-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()};
-    if (places) {
-        bisection.dive(0, places->highest);
-        bisection.dive(1, places->lowest);
-    }
-    return bounds;
+    const auto bisection = std::make_shared<Bisection>(module, texture, box, Goal::result, result, operations);
+    bisection->run(evaluations);
+    if (places)
+        *places = [bisection] {
+            HeightPlaces found;
+            bisection->dive(0, found.highest);
+            bisection->dive(1, found.lowest);
+            return found;
+        };
+    return {-bisection->bound(1), bisection->bound(0), bisection->may_be_nan()};
 }
 
 } // namespace
 
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations,
-                       uint64_t operations, HeightPlaces* places)
+                       uint64_t operations, std::function<HeightPlaces()>* places)
 {
     Interval height = result_bounds(module, texture, box, evaluations, 0, operations, places);
     if (height.is_empty()) height = {0, 0, true};

@@ -10,6 +10,7 @@
 #include "lang/ir/bounds/variation.h"
 #include "lang/ir/ir.h"
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -78,9 +79,10 @@ struct HeightPlaces {
 };
 // Of intervals, in all, at some 100 ns each: keeps a check short, whatever the program.
 inline constexpr uint64_t operations_of_check = 3'000'000;
-// Its height alone, which is cheaper; and, where asked for, its places.
+// Its height alone, which is cheaper. `places`, where given, is to be called afterwards for its places, which take
+// longer than the bounds of most textures do; the module outlives it.
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations = 4096,
-                       uint64_t operations = operations_of_check, HeightPlaces* places = nullptr);
+                       uint64_t operations = operations_of_check, std::function<HeightPlaces()>* places = nullptr);
 
 // Its material outputs, by bit of Texture::writes. One that may be NaN says so; the rest holds where it is a number.
 std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,

@@ -1,8 +1,7 @@
 // Textures that follow their files, however the files are written. Times here are patience, not claims.
 #include "jit/live/file_watch.h"
-#include "jit/live/live_texture.h"
 #include "jit/texture/resolver.h"
-#include "tests/jit/codegen/samples.h"
+#include "tests/jit/live/follower.h"
 #include "tests/support/folder.h"
 
 #include <atomic>
@@ -15,86 +14,9 @@
 
 using namespace haptel;
 using namespace std::chrono_literals;
+using test::constant;
 using test::contains;
-
-namespace {
-
-// A live texture and what it called back; heights are micrometres at the origin.
-class Follower {
-public:
-    Follower(const test::Folder& folder, std::vector<std::pair<std::string, std::string>> parameters = {},
-             double servo_period_s = 1e-3)
-    {
-        TextureRequest request = test::request_over(0.05);
-        request.reference = folder.file("t.haptel:t");
-        request.parameters = std::move(parameters);
-        jit::LiveOptions options;
-        options.cache = std::make_shared<jit::ProgramCache>();
-        jit::make_resolver(options.cache)(request); // what a scene has done before
-        request.servo_period_s = servo_period_s;
-        jit::LiveCallbacks callbacks;
-        callbacks.publish = [this](TextureBinding binding) {
-            if (refuses) throw std::runtime_error("no room in the hand");
-            const std::lock_guard lock(mutex);
-            height_um = 1e6 * test::sample_at(binding, {0, 0, 0}).height_m;
-            ++published;
-            held = std::move(binding);
-            changed.notify_all();
-        };
-        callbacks.report = [this](std::string_view text) {
-            const std::lock_guard lock(mutex);
-            reported += text;
-            changed.notify_all();
-        };
-        texture = std::make_unique<jit::LiveTexture>(request, callbacks, options);
-    }
-
-    ~Follower() { texture.reset(); } // before what its callbacks use
-
-    bool comes_to(double um)
-    {
-        return comes_true([&] { return std::fabs(height_um - um) < 1e-9; });
-    }
-    bool says(const std::string& part)
-    {
-        return comes_true([&] { return contains(reported, part); });
-    }
-    int publications()
-    {
-        const std::lock_guard lock(mutex);
-        return published;
-    }
-    std::string said()
-    {
-        const std::lock_guard lock(mutex);
-        return reported;
-    }
-
-    std::atomic<bool> refuses{false}; // to publish throws
-    std::unique_ptr<jit::LiveTexture> texture;
-
-private:
-    template <typename Condition>
-    bool comes_true(Condition&& condition)
-    {
-        std::unique_lock lock(mutex);
-        return changed.wait_for(lock, 20s, condition);
-    }
-
-    std::mutex mutex;
-    std::condition_variable changed;
-    double height_um = -1;
-    int published = 0;
-    std::string reported;
-    TextureBinding held;
-};
-
-std::string constant(const std::string& um)
-{
-    return "texture t(float depth = " + um + "um in 0um .. 1mm) { return depth; }";
-}
-
-} // namespace
+using test::Follower;
 
 TEST_CASE("an edit reaches the hand, however the file is saved")
 {
@@ -254,64 +176,6 @@ TEST_CASE("a picture is part of the texture")
         std::this_thread::sleep_for(1500ms);
         CHECK(follower.publications() == 0);
     }
-}
-
-TEST_CASE("values survive a reload by name and type, and sliders need no compiler")
-{
-    const test::Folder folder;
-    folder.write("t.haptel", constant("1"));
-    Follower follower(folder, {{"depth", "40um"}});
-    folder.write("t.haptel", constant("2") + " // new");
-    CHECK(follower.comes_to(40));
-    follower.texture->set_parameter("depth", "41um");
-    CHECK(follower.comes_to(41));
-    folder.write("t.haptel", "texture t(int depth = 3 in 1 .. 5) { return float(depth) * 1um; }");
-    CHECK(follower.comes_to(3));
-    CHECK(follower.says("41um of 'depth' is set aside"));
-    folder.write("t.haptel", constant("1"));
-    CHECK(follower.comes_to(41)); // it fits again
-    folder.write("t.haptel", "broken");
-    CHECK(follower.says("error"));
-    follower.texture->set_parameter("depth", "42um");
-    CHECK(follower.comes_to(42)); // of the last texture that compiled
-}
-
-TEST_CASE("a vector is set as a whole and by its components, a choice by its name, as long as they are there")
-{
-    const test::Folder folder;
-    folder.write("t.haptel", constant("1"));
-    Follower follower(folder);
-    const std::string shown = " { return bond == stack ? size.y : size.x; }";
-    folder.write("t.haptel", "texture t(int bond = running in {running, stack}, vec2 size = vec2(7um, 8um))" + shown);
-    CHECK(follower.comes_to(7));
-    follower.texture->set_parameter("size", "9um, 10um");
-    CHECK(follower.comes_to(9));
-    follower.texture->set_parameter("bond", "stack");
-    CHECK(follower.comes_to(10));
-    follower.texture->set_parameter("size.y", "11um");
-    CHECK(follower.comes_to(11));
-    folder.write("t.haptel", "texture t(int bond = none in {none, stack}, vec3 size = vec3(5um, 6um, 7um))" + shown);
-    CHECK(follower.says("9um, 10um of 'size' is set aside: expected 3 numbers"));
-    CHECK(follower.comes_to(11));
-    folder.write("t.haptel", "texture t(int bond = running in {running, english}, vec2 size = vec2(7um, 8um)) { return "
-                             "bond == english ? size.y : size.x; }");
-    CHECK(follower.comes_to(9));
-    CHECK(follower.says("stack of 'bond' is set aside: expected running or english"));
-}
-
-TEST_CASE("a value that is refused does not keep the next one from being felt; several at once are one binding")
-{
-    const test::Folder folder;
-    folder.write("t.haptel", "texture t(int n = 1 in 1 .. 20000, float depth = 1um, float more = 0um) { float h = 0.0; "
-                             "for (int i = 0; i < n; ++i) h += sin(p.x / 1mm + float(i)); return depth + more + 0.0 * "
-                             "clamp(h, -1.0, 1.0) * 1um; }");
-    Follower follower(folder, {}, 1e-4); // a call may take 20 us
-    follower.texture->set_parameter("n", "20000");
-    CHECK(follower.says("per call (median), more than the 20 us"));
-    CHECK(follower.publications() == 0);
-    follower.texture->set_parameters({{"depth", "5um"}, {"more", "2um"}});
-    CHECK(follower.comes_to(7));
-    CHECK(follower.publications() == 1);
 }
 
 TEST_CASE("an exception in a client is told, and the compile thread goes on with it and the others")

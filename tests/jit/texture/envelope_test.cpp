@@ -155,6 +155,86 @@ TEST_CASE("a search is the same each time, and finds at least what even places s
     CHECK(once.minimum_m <= truth.minimum_m + 0.1 * (truth.maximum_m - truth.minimum_m));
 }
 
+TEST_CASE("a search that ends early gives the range of one that goes to the end")
+{
+    const auto program = compiled(std::string(idioms) + R"(
+texture sines() { return 50um * sin(p.x / 1mm) * sin(p.y / 3mm); }
+texture octaves() { return 400um * fbm(p / 3mm, 5); }
+texture flat() { return 30um; }
+texture wide() { return 3mm * perlin(p / 2mm) * perlin(p / 3mm) * perlin(p / 5mm); }
+texture shallow() { return 30um * noise(p / 1mm) * noise(p / 2mm) * noise(p / 3mm); }
+texture rivet() { return 2um * noise(p / 1mm) + 2mm * smoothstep(0.0, 0.2mm, 0.8mm - length(p - vec3(7mm, 3mm, 2mm))); }
+texture pole() { return 1um / (p.x / 1m); }
+texture steep() { return 1um * exp(p.x / 0.05mm); }
+texture high() { return 1mm * exp(p.x / 10mm); }
+)");
+    for (const haptel_texture& texture : program->textures())
+        for (const double side_m : {0.05, 0.2}) {
+            jit::FoundHeights found;
+            const TextureRequest request = request_over(side_m);
+            const auto early = jit::make_binding(program, texture.name, request),
+                       late = jit::make_binding(program, texture.name, request, jit::For::hand, &found);
+            REQUIRE((early.binding && late.binding));
+            CAPTURE(texture.name, side_m, late.binding->facts.height_min_m, late.binding->facts.height_max_m);
+            CHECK(early.binding->facts.height_min_m == late.binding->facts.height_min_m);
+            CHECK(early.binding->facts.height_max_m == late.binding->facts.height_max_m);
+            CHECK(std::ranges::equal(early.binding->shoulder_m, late.binding->shoulder_m));
+            CHECK(early.diagnostics == late.diagnostics);
+        }
+}
+
+TEST_CASE("a knob is turned at once: a range that was found is stretched, one that was proven stays proven")
+{
+    constexpr double side_m = 0.05;
+    const auto program = compiled(std::string(idioms) + R"(
+texture found(float depth = 50um, float size = 3mm) { return depth * simplex_plane(p.xy / size); }
+texture proven(float depth = 50um, float size = 3mm)
+{ return 2um * noise(p / size) + depth * smoothstep(0.0, 0.2mm, 0.8mm - length(p - vec3(7mm, 3mm, 2mm))); }
+)");
+    const auto turned = [&](const char* name, const char* parameter, const char* value) {
+        TextureRequest request = request_over(side_m);
+        const auto before = jit::make_binding(program, name, request).binding;
+        REQUIRE(before);
+        request.parameters = {{parameter, value}};
+        const auto after = jit::make_binding_at_once(program, name, request, *before).binding;
+        REQUIRE(after);
+        const haptel_facts& range = after->facts;
+        CHECK(after->shoulder_m[0] + after->shoulder_m[1] <= 2 * (range.height_max_m - range.height_min_m));
+        // Nothing of it is felt bent.
+        const Truth truth = dense(*after, side_m);
+        CAPTURE(name, parameter, value, truth.minimum_m, truth.maximum_m, range.height_min_m, range.height_max_m);
+        CHECK(truth.maximum_m <= range.height_max_m - after->shoulder_m[1] / 2 + 1e-12);
+        CHECK(truth.minimum_m >= range.height_min_m + after->shoulder_m[0] / 2 - 1e-12);
+        return std::pair(*before, *after);
+    };
+    for (const char* depth : {"80um", "20um", "1mm"}) {
+        const auto [before, after] = turned("found", "depth", depth);
+        const double share = std::strtod(depth, nullptr) * (std::string(depth) == "1mm" ? 1e-3 : 1e-6) / 50e-6;
+        CHECK(std::fabs(after.facts.height_max_m / before.facts.height_max_m - share) < 1e-9 * share);
+        CHECK(std::fabs(after.facts.height_min_m / before.facts.height_min_m - share) < 1e-9 * share);
+        CHECK(std::fabs(after.shoulder_m[1] / before.shoulder_m[1] - share) < 1e-9 * share);
+    }
+    for (const char* size : {"2mm", "9mm"}) { // the same heights at other places
+        const auto [before, after] = turned("found", "size", size);
+        CHECK(std::fabs(after.facts.height_max_m / before.facts.height_max_m - 1) < 0.1);
+        CHECK(std::fabs(after.facts.height_min_m / before.facts.height_min_m - 1) < 0.1);
+    }
+    // A rivet that no place of a few lies on is not cut off.
+    for (const char* depth : {"3mm", "200um"}) {
+        const auto [before, after] = turned("proven", "depth", depth);
+        CHECK((after.shoulder_m[0] == 0 && after.shoulder_m[1] == 0));
+        CHECK(after.facts.height_max_m >= (std::string(depth) == "3mm" ? 3e-3 : 200e-6));
+    }
+    // Nothing can be said at once of heights that are all one.
+    TextureRequest request = request_over(side_m);
+    const auto before = jit::make_binding(program, "found", request).binding;
+    request.parameters = {{"depth", "0um"}};
+    const TextureResult flat = jit::make_binding_at_once(program, "found", request, before.value());
+    CHECK((!flat.binding && flat.diagnostics.empty()));
+    request.parameters = {{"depth", "5kg"}};
+    CHECK(!jit::make_binding_at_once(program, "found", request, before.value()).diagnostics.empty());
+}
+
 TEST_CASE("a texture that is slow is searched by few calls, and one that is too slow by none")
 {
     const auto program =

@@ -1,5 +1,6 @@
 // Parameters that other programs set while a hand feels them.
 #include "runtime/render/renderer.h"
+#include "tests/jit/texture/idioms.h"
 #include "tests/tools/commands/live_stage.h"
 #include "tests/tools/control/osc_client.h"
 #include "tools/control/osc_server.h"
@@ -150,4 +151,32 @@ TEST_CASE("10 000 parameters set over OSC while a servo runs: no allocation, no 
     CHECK(changed.step_max_n < 2 * changed.force_max_n / 50);
     CHECK(changed.heap_growth < 1 << 17); // the values published take four times as much
     CHECK(changed.resident_growth < 16 << 20);
+}
+
+TEST_CASE(
+    "a knob of a texture whose range is searched: no step of the force, neither at once nor when it comes to rest")
+{
+    LiveStage stage(std::string(idioms) +
+                    "texture t(float depth = 50um in 0um .. 200um, float size = 3mm in 1mm .. 5mm)\n"
+                    "{ return depth * simplex_plane(p.xy / size); }\n");
+    std::this_thread::sleep_for(200ms); // until the range of what is in the hand is known
+    constexpr int times = 20;
+    int set = 0;
+    const LiveRun turned = LiveRun::of(stage, 40 * times, [&](int i) {
+        std::this_thread::sleep_for(5ms);
+        if (i % 40 != 0) return;
+        const bool is_size = ++set % 2 == 0;
+        CHECK(stage.textures
+                  .set(1, is_size ? "size" : "depth",
+                       std::to_string(is_size ? 1 + set % 5 : 10 * set) + (is_size ? "mm" : "um"))
+                  .refused.empty());
+    });
+    WARN(stage.slot().newest_serial() - 1 << " bindings of " << set << " values; force " << turned.force_min_n << " .. "
+                                          << turned.force_max_n << " N, largest step " << turned.step_max_n
+                                          << " N in a period");
+    CHECK(stage.slot().newest_serial() > 5); // where there is time, each at once and most again
+    CHECK(turned.report.allocations_in_tick == 0);
+    CHECK(turned.report.faults == 0);
+    CHECK(turned.force_max_n - turned.force_min_n > 0.05);
+    CHECK(turned.step_max_n < 2 * turned.force_max_n / 50);
 }

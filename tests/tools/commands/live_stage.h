@@ -54,13 +54,14 @@ struct LiveStage {
     tools::ExploreTextures textures;
     std::shared_ptr<const runtime::Scene> scene;
 
-    // `text`: of t.haptel, which has a texture t.
-    explicit LiveStage(const std::string& text)
+    // `text`: of t.haptel, which has a texture t; another one where it is named.
+    explicit LiveStage(const std::string& text, const std::string& reference = "t.haptel:t")
     {
         folder.write("t.haptel", text);
         const std::string file =
             folder.write("scene.toml", "[servo]\nforce_rise_s = 0.01\n[[object]]\nshape = \"plane\"\nsize_m = 0.1\n"
-                                       "texture = \"t.haptel:t\"\n");
+                                       "texture = \"" +
+                                           reference + "\"\n");
         const runtime::LoadedScene loaded = runtime::load_scene(file, textures.resolver(), {});
         INFO(loaded.diagnostics);
         REQUIRE(loaded.scene);
