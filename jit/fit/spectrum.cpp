@@ -30,6 +30,14 @@ std::vector<Band> thirds_of_octaves(double from, double to, std::size_t count, d
     return bands;
 }
 
+std::vector<std::size_t> pieces_of(std::size_t length, std::size_t count)
+{
+    const std::size_t rest = length - count, further = (2 * rest + count - 1) / count;
+    std::vector<std::size_t> begins{0};
+    for (std::size_t piece = 1; piece <= further; ++piece) begins.push_back(rest * piece / further);
+    return begins;
+}
+
 LineSpectrum::LineSpectrum(std::size_t count, double apart, std::vector<Band> of_bands)
     : all(std::move(of_bands)), step(apart), window(count), band_of(count / 2, -1)
 {
@@ -80,9 +88,8 @@ std::vector<double> LineSpectrum::mean_powers(std::span<const std::vector<double
     const std::size_t count = window.size();
     double pieces = 0;
     for (const std::vector<double>& record : records) {
-        const std::size_t rest = record.size() - count, further = (2 * rest + count - 1) / count;
-        for (std::size_t piece = 0; piece <= further; ++piece, ++pieces) {
-            const std::size_t from = further > 0 ? rest * piece / further : 0;
+        for (const std::size_t from : pieces_of(record.size(), count)) {
+            ++pieces;
             const std::vector<std::complex<double>> one = transform(std::span(record).subspan(from, count));
             for (std::size_t k = 1; k < band_of.size(); ++k)
                 if (band_of[k] >= 0)

@@ -19,6 +19,9 @@ struct Band {
 // frequencies of the transform and lies below 0.9 of the highest one.
 std::vector<Band> thirds_of_octaves(double from, double to, std::size_t count, double step);
 
+// Where pieces of `count` samples begin that overlap by half or more and lie over all of a record of `length`.
+std::vector<std::size_t> pieces_of(std::size_t length, std::size_t count);
+
 // Lines of one length, under Hann's window, their means taken off. Not for several threads at once.
 class LineSpectrum {
 public:
@@ -29,8 +32,7 @@ public:
     std::vector<double> powers(std::span<const double> line);
     // How those powers move when the line moves like that.
     std::vector<double> moves(std::span<const double> line_moves);
-    // Over longer records: the mean over pieces that overlap by half or more, seen through a filter: by its gain for
-    // power at a frequency.
+    // Over longer records: the mean over their pieces, seen through a filter: by its gain for power at a frequency.
     std::vector<double> mean_powers(std::span<const std::vector<double>> records,
                                     const std::function<double(double)>& gain);
     // Of noise that is white with a mean square of 1, seen through such a filter.

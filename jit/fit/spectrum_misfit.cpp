@@ -14,21 +14,21 @@ constexpr double off_sure_db = 0.2;   // what no model of a surface is nearer th
 // Of the strongest band's power, as recorded: what is weaker is drowned, and no logarithm is of 0.
 constexpr double drowned = 1e-4;
 
-// Along the stroke's direction, anywhere on a square whose side is as long as its passes.
+// Along the stroke's direction, on a square whose side is as long as its passes: in the places of their pieces along
+// it, and anywhere across.
 std::vector<haptel_point> lines_over(const Stroke& stroke, std::size_t count, std::size_t lines)
 {
     std::vector<haptel_point> points;
-    const double side_m = stroke.pass_m(), spare_m = side_m - stroke.step_m() * static_cast<double>(count);
+    const double side_m = stroke.pass_m();
+    const auto samples = static_cast<std::size_t>(std::llround(side_m / stroke.step_m()));
+    const std::vector<std::size_t> pieces = pieces_of(samples, count);
     const auto& [x, y] = stroke.direction;
     for (std::size_t line = 0; line < lines; ++line) {
-        // not at even distances, which could be a texture's own (Roberts' sequence)
-        constexpr double root = 1.324717957244746;
-        const double first = std::fmod(0.5 + static_cast<double>(line) / root, 1.0),
-                     second = std::fmod(0.5 + static_cast<double>(line) / (root * root), 1.0);
+        // not at even distances, which could be a texture's own
+        const double across_m = side_m * (std::fmod(0.5 + static_cast<double>(line) / std::numbers::phi, 1.0) - 0.5);
         for (std::size_t i = 0; i < count; ++i) {
             haptel_point point{};
-            const double along_m = stroke.step_m() * static_cast<double>(i) + spare_m * first - side_m / 2,
-                         across_m = side_m * (second - 0.5);
+            const double along_m = stroke.step_m() * static_cast<double>(pieces[line % pieces.size()] + i) - side_m / 2;
             point.p[0] = along_m * x - across_m * y;
             point.p[1] = along_m * y + across_m * x;
             point.n[2] = 1;
