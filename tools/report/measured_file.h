@@ -18,8 +18,8 @@ struct MeasuredStroke {
     jit::Stroke stroke; // rate and passes; what they are of
     std::string error, hint;
 };
-// A CSV table with a header: time_s, at even distances within each pass and a gap between two, and force_n, fz_n (of a trace of `haptel explore` over a plane)
-// or acceleration_m_per_s2.
+// A CSV table with a header: time_s, at even distances within each pass and a gap between two, and force_n, fz_n (of a
+// trace of `haptel explore` over a plane) or acceleration_m_per_s2.
 MeasuredStroke read_stroke(const std::string& file);
 
 // Ends like a table and not like a picture.
