@@ -134,7 +134,7 @@ Inverse3Driver::Ending Inverse3Driver::converse(ServiceSocket& socket, const Inv
     owed_ = 0;
     session_states_ = 0;
     said_n_ = no_force_n;
-    said(socket.send(inverse3_first_message(device.id).view()), device.id, no_force_n);
+    say(socket, inverse3_first_message(device.id).view(), device.id, no_force_n);
     session_.store(++sessions_, std::memory_order_release);
     Ending ending;
     try {
@@ -161,7 +161,7 @@ Inverse3Driver::Ending Inverse3Driver::exchange(ServiceSocket& socket, const Inv
         const glm::dvec3 force_n = wanted_n(now_ns);
         if (is_due(force_n, now_ns) && !socket.is_writing()) {
             note_what_is_dropped(force_n);
-            said(socket.send(inverse3_force(device.id, force_n).view()), device.id, force_n);
+            say(socket, inverse3_force(device.id, force_n).view(), device.id, force_n);
         }
         switch (socket.wait(socket.is_writing() ? now_ns + ns_per_ms : next_deadline_ns())) {
         case SocketEvent::message:
@@ -249,12 +249,14 @@ int64_t Inverse3Driver::next_deadline_ns() const noexcept
 }
 
 // Where it was not sent the connection is lost, and the wait that follows says why.
-void Inverse3Driver::said(bool was_sent, const std::string& id, const glm::dvec3& force_n)
+void Inverse3Driver::say(ServiceSocket& socket, std::string_view message, const std::string& id,
+                         const glm::dvec3& force_n)
 {
-    if (!was_sent) return;
+    const int64_t now_ns = runtime::monotonic_ns(); // the answer may be here before send() returns
+    if (!socket.send(message)) return;
     if (force_n != no_force_n) held_by_ = id;
     said_n_ = force_n;
-    said_ns_ = runtime::monotonic_ns();
+    said_ns_ = now_ns;
     asked_ns_ = owed_ == 0 && said_ns_ >= unsure_until_ns_ ? said_ns_ : 0;
     if (owed_++ == 0) owed_since_ns_ = said_ns_;
     is_fresh_ = false;
@@ -266,7 +268,7 @@ void Inverse3Driver::say_last(ServiceSocket& socket, const std::string& id)
 {
     const int64_t until_ns = runtime::monotonic_ns() + ns_per_ms * times_.close_ms;
     if (!socket.flush(until_ns)) return;
-    said(socket.send(inverse3_force(id, no_force_n).view()), id, no_force_n);
+    say(socket, inverse3_force(id, no_force_n).view(), id, no_force_n);
     if (socket.flush(until_ns) && socket.close(times_.close_ms)) held_by_.clear();
 }
 
@@ -277,7 +279,7 @@ void Inverse3Driver::take_force_away_at_the_end()
     static constexpr std::atomic<bool> never{false};
     ServiceSocket socket(wake_);
     if (!greet_inverse3(socket, address_, times_.rescue_ms, never).error.empty()) return;
-    said(socket.send(inverse3_first_message(held_by_).view()), held_by_, no_force_n);
+    say(socket, inverse3_first_message(held_by_).view(), held_by_, no_force_n);
     say_last(socket, std::string(held_by_));
 }
 

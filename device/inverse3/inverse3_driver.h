@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 
 namespace haptel::device {
@@ -90,7 +91,7 @@ private:
     void note_what_is_dropped(const glm::dvec3& force_n) noexcept;
     void was_silenced() noexcept;
     void count_dropped() noexcept;
-    void said(bool was_sent, const std::string& id, const glm::dvec3& force_n);
+    void say(ServiceSocket& socket, std::string_view message, const std::string& id, const glm::dvec3& force_n);
     void say_last(ServiceSocket& socket, const std::string& id);
     void take_force_away_at_the_end();
     void enter(Inverse3Phase phase, std::string state);
