@@ -72,6 +72,9 @@ void report_unknown(const std::vector<CheckFile>& files, const CheckFile& file, 
         if (import.prefix.text != prefix) known.push_back(import.prefix.text + "." + std::string(name));
     }
     for (const CheckFile::Imported& imported : file.imported)
+        if (imported.prefix == prefix && files[imported.file].tree.unread.contains(name))
+            return diagnostics.count_consequence();
+    for (const CheckFile::Imported& imported : file.imported)
         for (const Texture& texture : files[imported.file].tree.textures)
             if (!prefix.empty() && imported.prefix == prefix)
                 known.push_back(imported.prefix + "." + texture.name.text);

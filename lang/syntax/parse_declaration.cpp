@@ -324,7 +324,12 @@ void Grammar::texture(File& result)
     if (result.textures.size() + result.presets.size() == textures_max) {
         error(made.name.span, "too-large", "expected at most " + std::to_string(textures_max) + " textures in a file",
               "put the others into another file");
-        return give_up(); // trees of what is refused would cost more than all else
+        // Trees of what is refused would cost more than all else: names alone are kept.
+        result.unread.insert(made.name.text);
+        for (size_t i = position; i < list.tokens.size(); ++i)
+            if (list.tokens[i - 1].kind == Token::kw_texture && list.tokens[i].kind == Token::name)
+                result.unread.emplace(sources.text({file, list.tokens[i].begin, list.tokens[i].end}));
+        return give_up();
     }
     if (accept(Token::assign)) return preset(result, std::move(made), first);
     if (at(Token::left_brace)) {

@@ -189,6 +189,20 @@ TEST_CASE("compile: imports bring functions and constants of a file, once, and n
     CHECK(messages(result) == "broken.haptel:1:31: unknown name 'b'\n");
 }
 
+TEST_CASE("compile: a file of too many textures is told once, not at each preset of one that was left unread")
+{
+    std::string big;
+    for (int i = 0; i < 1002; ++i) big += "texture t" + std::to_string(i) + "() { return 0.0; }\n";
+    const auto of = [&](const std::string& name) {
+        return codes(compile({"main.haptel", "import \"big.haptel\" as big;\ntexture t = big." + name + "();"},
+                             with_files({{"big.haptel", big}})));
+    };
+    CHECK(of("t3") == std::vector<std::string>{"too-large"});
+    CHECK(of("t1000") == std::vector<std::string>{"too-large"});
+    CHECK(of("t1001") == std::vector<std::string>{"too-large"});
+    CHECK(of("t1002") == std::vector<std::string>{"unknown-texture", "too-large"});
+}
+
 TEST_CASE("compile: imports that cannot be")
 {
     CompileResult result =

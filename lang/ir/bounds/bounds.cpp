@@ -13,7 +13,7 @@ namespace haptel::ir {
 namespace {
 
 constexpr uint64_t operations_per_evaluation = 1'000'000;
-constexpr uint64_t operations_of_derivatives = 5'000'000; // as operations_of_check; calls count as well
+constexpr uint64_t operations_of_derivatives = 5'000'000; // more than operations_of_check: calls count, too
 // Instructions, of the longest programs that are looked at as closely: of longer ones every step costs more, so that
 // fewer are taken.
 constexpr uint64_t usual_extent = 5'000;
