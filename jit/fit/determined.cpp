@@ -27,7 +27,7 @@ std::vector<double> deviations(Unknowns& unknowns, Misfit& misfit, const Found& 
         const auto at = static_cast<std::size_t>(j);
         jacobian.col(j) *= unknowns.reals[at].slope(best.guess.coordinates[at]);
     }
-    const double noise = std::max(best.misfit, rounding * misfit.scale());
+    const double noise = std::max(best.misfit, misfit_rounding * misfit.scale());
     const Eigen::BDCSVD<Eigen::MatrixXd> parts(jacobian, Eigen::ComputeThinV);
     std::vector<double> found;
     for (Eigen::Index j = 0; j < columns; ++j) {

@@ -32,9 +32,11 @@ FitResult fit_stroke(const std::shared_ptr<const CompiledProgram>& program, cons
     FitResult refused;
     for (std::size_t i = 0; i < stroke.passes.size(); ++i)
         if (stroke.passes[i].size() < samples_min) {
-            refused.failure = "expected passes of at least " + std::to_string(samples_min) + " samples, found " +
-                              std::to_string(stroke.passes[i].size()) + " in pass " + std::to_string(i + 1) + " of " +
-                              std::to_string(stroke.passes.size()) + ": leave it out";
+            refused.failure = "expected at least " + std::to_string(samples_min) + " samples in each pass, found " +
+                              std::to_string(stroke.passes[i].size());
+            if (stroke.passes.size() > 1)
+                refused.failure += " in pass " + std::to_string(i + 1) + " of " + std::to_string(stroke.passes.size()) +
+                                   "; a gap in the times ends a pass: leave short ones out";
             return refused;
         }
     if (stroke.passes.empty()) {
@@ -42,7 +44,7 @@ FitResult fit_stroke(const std::shared_ptr<const CompiledProgram>& program, cons
         return refused;
     }
     const std::size_t samples = samples_of(stroke);
-    TextureToFit fit(program, request, stroke.pass_m(), stroke.pass_m());
+    TextureToFit fit(program, request, stroke.box_m(), stroke.box_m());
     refused.failure = fit.failure();
     if (!refused.failure.empty()) return refused;
 

@@ -166,16 +166,20 @@ void step_wholes(Unknowns& unknowns, Misfit& misfit, std::vector<Found>& all, in
 void prefer_start(const Unknowns& unknowns, const Misfit& misfit, std::vector<Found>& all)
 {
     const Guess start = unknowns.start();
-    const auto away = [&](const Found& found) {
+    const auto apart = [](const Guess& a, const Guess& b) {
         double square = 0;
-        for (std::size_t i = 0; i < start.coordinates.size(); ++i)
-            square += std::pow(found.guess.coordinates[i] - start.coordinates[i], 2);
-        return square;
+        for (std::size_t i = 0; i < a.coordinates.size(); ++i)
+            square += std::pow(a.coordinates[i] - b.coordinates[i], 2);
+        for (std::size_t i = 0; i < a.wholes.size(); ++i) square += a.wholes[i] != b.wholes[i] ? 1 : 0;
+        return std::sqrt(square);
     };
-    const auto others =
-        std::ranges::partition_point(all, [&](const Found& found) { return fits_as_well(found, all.front(), misfit); });
-    std::iter_swap(all.begin(), std::min_element(all.begin(), others,
-                                                 [&](const Found& a, const Found& b) { return away(a) < away(b); }));
+    constexpr double same_place = 0.02; // on the way to the best, and not yet there
+    auto nearest = all.begin();
+    for (auto other = all.begin(); other != all.end() && fits_as_well(*other, all.front(), misfit); ++other)
+        if (apart(other->guess, all.front().guess) > same_place &&
+            apart(other->guess, start) < apart(nearest->guess, start))
+            nearest = other;
+    std::iter_swap(all.begin(), nearest);
 }
 
 // What else fits as well near the best: found by going away from it a little and coming back.
@@ -197,7 +201,7 @@ void shake(Unknowns& unknowns, Misfit& misfit, std::vector<Found>& all, const Fi
 bool fits_as_well(const Found& found, const Found& best, const Misfit& misfit)
 {
     constexpr double alike_ratio = 1.01; // misfits within 1 % are told apart by nothing
-    return found.misfit <= alike_ratio * best.misfit + rounding * misfit.scale();
+    return found.misfit <= alike_ratio * best.misfit + misfit_rounding * misfit.scale();
 }
 
 Found refine(Unknowns& unknowns, Misfit& misfit, Guess start, int steps_max)

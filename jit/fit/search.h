@@ -23,7 +23,7 @@ struct Found {
     double misfit = 0; // root of the mean square of the rows, in their unit
 };
 
-inline constexpr double rounding = 1e-9; // of what was measured: less is no difference
+inline constexpr double misfit_rounding = 1e-9; // of what was measured: less is no difference
 // Whether nothing that was measured tells it from the best.
 bool fits_as_well(const Found& found, const Found& best, const Misfit& misfit);
 

@@ -28,14 +28,15 @@ std::vector<haptel_point> lines_over(const Stroke& stroke, std::size_t count, st
         const double across_m = side_m * (std::fmod(0.5 + static_cast<double>(line) / std::numbers::phi, 1.0) - 0.5);
         for (std::size_t i = 0; i < count; ++i) {
             haptel_point point{};
-            const double along_m = stroke.step_m() * static_cast<double>(pieces[line % pieces.size()] + i) - side_m / 2;
+            const double along_m =
+                stroke.step_m() * static_cast<double>(pieces[line * pieces.size() / lines] + i) - side_m / 2;
             point.p[0] = along_m * x - across_m * y;
             point.p[1] = along_m * y + across_m * x;
             point.n[2] = 1;
             point.tangent[0] = point.bitangent[1] = 1;
-            point.uv[0] = point.p[0] / side_m + 0.5;
-            point.uv[1] = point.p[1] / side_m + 0.5;
-            point.uv_dp[0][0] = point.uv_dp[1][1] = 1 / side_m;
+            point.uv[0] = point.p[0] / stroke.box_m() + 0.5;
+            point.uv[1] = point.p[1] / stroke.box_m() + 0.5;
+            point.uv_dp[0][0] = point.uv_dp[1][1] = 1 / stroke.box_m();
             point.velocity[0] = stroke.speed_m_per_s * x;
             point.velocity[1] = stroke.speed_m_per_s * y;
             points.push_back(point);

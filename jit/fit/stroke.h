@@ -1,6 +1,7 @@
 // A recorded stroke over a surface, to and fro: what a hand felt or an accelerometer measured, at one speed.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct Stroke {
         return sum;
     }
     double pass_m() const { return step_m() * static_cast<double>(samples()) / static_cast<double>(passes.size()); }
+    // Side of the object, upright, in which a square of passes lies.
+    double box_m() const { return pass_m() * (std::abs(direction[0]) + std::abs(direction[1])); }
     double step_m() const { return speed_m_per_s / rate_hz; }
     // Power of heights over that of the values, at so many cycles per metre.
     double power_of_height(double cycles_per_m) const;

@@ -113,13 +113,14 @@ MeasuredStroke read_stroke(const std::string& file)
     for (std::size_t i = 1; i < times_s.size(); ++i) apart_s.push_back(times_s[i] - times_s[i - 1]);
     std::vector<double> sorted_s = apart_s;
     std::ranges::sort(sorted_s);
+    if (!(sorted_s[sorted_s.size() / 2] > 0)) return no_stroke(fmt::format("the times in '{}' do not grow", file));
     const double gap_s = 1.5 * sorted_s[sorted_s.size() / 2]; // where samples are left out
     const auto within = std::ranges::subrange(sorted_s.begin(), std::ranges::lower_bound(sorted_s, gap_s));
     const double step_s = std::reduce(within.begin(), within.end()) / static_cast<double>(within.size());
     read.stroke.passes = {{values[0]}};
     for (std::size_t i = 1; i < times_s.size(); ++i) {
         const bool is_gap = apart_s[i - 1] >= gap_s;
-        if (!(step_s > 0) || (!is_gap && std::abs(apart_s[i - 1] - step_s) > std::max(uneven_max * step_s, 1e-9)))
+        if (!is_gap && std::abs(apart_s[i - 1] - step_s) > std::max(uneven_max * step_s, 1e-9))
             return no_stroke(fmt::format("{}:{}: expected a sample each {:.6g} s, found one after {:.6g} s", file,
                                          i + 2, step_s, apart_s[i - 1]),
                              "a spectrum needs samples at even distances: resample the recording");

@@ -125,6 +125,7 @@ TEST_CASE("fit says what is missing, wrong or unreadable")
                       map = folder.write("map.pgm", picture(1e-4, 1e-3, 0)),
                       table = folder.write("table.csv", "time_s,x\n0,1\n"),
                       uneven = folder.write("uneven.csv", "time_s,force_n\n0,1\n0.001,1\n0.0022,1\n"),
+                      still = folder.write("still.csv", "time_s,force_n\n0,1\n0,1\n0,1\n"),
                       backward = folder.write("backward.csv", "time_s,force_n\n0,1\n0.001,1\n0.0005,1\n"),
                       words = folder.write("words.csv", "time_s,force_n\n0,1\n0.001,many\n"),
                       stroke = folder.write("stroke.csv", "time_s,force_n\n0,1\n0.001,1\n0.002,1\n");
@@ -144,8 +145,9 @@ TEST_CASE("fit says what is missing, wrong or unreadable")
     says("'" + table + "' --speed 0.1 --stiffness 1", 1, "table.csv:1: expected the columns");
     says("'" + uneven + "' --speed 0.1 --stiffness 1", 1, "even distances");
     says("'" + backward + "' --speed 0.1 --stiffness 1", 1, "even distances");
+    says("'" + still + "' --speed 0.1 --stiffness 1", 1, "do not grow");
     says("'" + words + "' --speed 0.1 --stiffness 1", 1, "words.csv:3: force_n");
-    says("'" + stroke + "' --speed 0.1 --stiffness 1", 1, "at least 128 samples, found 3");
+    says("'" + stroke + "' --speed 0.1 --stiffness 1", 1, "at least 128 samples in each pass, found 3");
     says("'" + map + "' --scale 0.1mm --height 1mm --set pich=1mm", 1, "pitch");
     says("'" + map + "' --scale 0.1mm --height 1mm --preset /nowhere/x.haptel", 1, "/nowhere/x.haptel");
 }
