@@ -48,9 +48,11 @@ bool is_same_range(const TextureBinding& one, const TextureBinding& other)
 class CompileThread {
 public:
     struct Place {
-        std::mutex at_work;            // held during an update
-        std::function<void()> update;  // looks whether files have changed, and acts; throws nothing. Null: no more
-        std::set<std::string> watched; // files, as of the last update
+        std::mutex at_work; // held during an update
+        // Looks whether files have changed, and acts; what takes long and nobody waits for, it does only if it may, and
+        // then says that no other may. Throws nothing. Null: no more.
+        std::function<void(bool& may_take_long)> update;
+        std::set<std::string> watched;        // files, as of the last update
         std::optional<Clock::time_point> due; // of the next update, at the latest
     };
 
@@ -120,16 +122,17 @@ private:
     // Of those that there are at the start: who is added meanwhile wakes the thread anew.
     void update_clients()
     try {
+        clients_due = Clock::time_point::max();
         std::unique_lock lock(places_mutex);
         std::erase_if(places, [](const auto& place) { return place.use_count() == 1; });
         const std::vector<std::shared_ptr<Place>> all = places;
         lock.unlock();
         std::set<std::string> files;
-        clients_due = Clock::time_point::max();
+        bool may_take_long = true; // one a round: a value waits for no more
         for (const auto& place : all) {
             const std::lock_guard at_work(place->at_work);
             if (!place->update) continue;
-            place->update();
+            place->update(may_take_long);
             files.insert(place->watched.begin(), place->watched.end());
             clients_due = std::min(clients_due, place->due.value_or(clients_due));
         }
@@ -160,7 +163,7 @@ public:
     {
         if (in_hand && in_hand->program) pictures_in_hand = pictures_of(*in_hand->program);
         place->watched = {reference.file};
-        place->update = [this] { update(); };
+        place->update = [this](bool& may_take_long) { update(may_take_long); };
         place->due = Clock::now(); // to know the range of what is in the hand
         thread->add(place);
     }
@@ -246,14 +249,16 @@ private:
         std::string said = usable->rendered();
         const TextureRequest fitting = request_for(*usable->program, said);
         const auto program = program_of(usable);
-        if (!of_values_alone) complete.reset();
+        if (!of_values_alone) complete.reset(), at_once.reset(), place->due.reset();
         TextureResult result;
         if (complete) result = make_binding_at_once(program, reference.texture, fitting, *complete);
-        at_once = result.binding;
-        if (at_once) place->due = Clock::now() + rest;
-        if (!at_once && result.diagnostics.empty()) {
+        const bool is_at_once = result.binding.has_value();
+        if (is_at_once) {
+            at_once = result.binding;
+            place->due = Clock::now() + rest;
+        } else if (result.diagnostics.empty()) {
             result = make_binding(program, reference.texture, fitting);
-            if (result.binding) complete = result.binding;
+            if (result.binding) complete = result.binding, at_once.reset(), place->due.reset();
         }
         said += about_file(reference.file, result.diagnostics);
         if (!result.binding) {
@@ -262,17 +267,22 @@ private:
         }
         if (of_values_alone && callbacks.publish_values) return callbacks.publish_values(std::move(*result.binding));
         callbacks.publish(std::move(*result.binding));
-        report(std::move(said));
+        if (!is_at_once) report(std::move(said)); // else with the range, of which there may be something to say
     }
 
     // Finds the range of heights with patience: what is in the hand has another where it was made at once.
     void complete_range()
     {
-        std::string notes; // were told when the values came
-        const TextureRequest fitting = request_for(*usable->program, notes);
-        complete = make_binding(program_of(usable), reference.texture, fitting).binding;
+        place->due.reset();
+        if (!usable) return;
+        std::string said = usable->rendered();
+        const TextureRequest fitting = request_for(*usable->program, said);
+        const TextureResult result = make_binding(program_of(usable), reference.texture, fitting);
+        complete = result.binding;
         const std::optional<TextureBinding> felt = std::exchange(at_once, std::nullopt);
-        if (!felt || !complete || is_same_range(*felt, *complete)) return;
+        if (!felt) return;
+        if (!callbacks.publish_values) report(said + about_file(reference.file, result.diagnostics));
+        if (!complete || is_same_range(*felt, *complete)) return;
         (callbacks.publish_values ? callbacks.publish_values : callbacks.publish)(*complete);
     }
 
@@ -292,16 +302,20 @@ private:
         for (const UsedPicture& picture : pictures_in_hand) place->watched.insert(picture.file);
     }
 
-    void follow()
+    void follow(bool& may_take_long)
     {
-        const bool edited = take_edits(), is_at_rest = place->due && *place->due <= Clock::now();
-        if (is_at_rest) place->due.reset();
+        const bool edited = take_edits(),
+                   is_at_rest = may_take_long && !edited && place->due && *place->due <= Clock::now();
+        if (is_at_rest) {
+            place->due = Clock::now() + rest; // if it does not come to it now
+            may_take_long = false;
+        }
         const auto compiled = cache->load(reference.file);
         watch(*compiled);
         if (!compiled->program) {
             in_hand = compiled;
             if (edited && usable) make_and_publish(true); // a slider works on while the file is broken
-            if (!edited && usable && is_at_rest) complete_range();
+            if (is_at_rest) complete_range();
             if (!is_forgiven(compiled->has_finding("unreadable-file"))) report(compiled->rendered());
             return;
         }
@@ -327,9 +341,9 @@ private:
     }
 
     // Nothing that happens here may end the thread, and with it the process and the force in somebody's hand.
-    void update() noexcept
+    void update(bool& may_take_long) noexcept
     try {
-        follow();
+        follow(may_take_long);
     } catch (const std::exception& problem) {
         failed(problem.what());
     } catch (...) {
@@ -344,8 +358,9 @@ private:
     std::shared_ptr<const CompiledTextures> in_hand; // what was looked at last; broken ones too
     std::shared_ptr<const CompiledTextures> usable;  // the last one that has a program
     std::vector<UsedPicture> pictures_in_hand;       // as of the last look
-    std::optional<TextureBinding> complete; // of `usable`, with a range found with patience: of the values of now, or
-    std::optional<TextureBinding> at_once;  // if it is there, of those before
+    // Of `usable`, with a range found with patience: of the values of now or, where at_once is set, of earlier ones.
+    std::optional<TextureBinding> complete;
+    std::optional<TextureBinding> at_once; // what is felt now, where its range is still to be completed
     std::optional<Clock::time_point> absent_since;
     std::string reported; // the last report, not to be repeated
 

@@ -44,6 +44,15 @@ bool is_proven_well(const haptel_facts& facts, const FoundHeights& found)
             facts.height_max_m <= found.maximum_m + deep_proof_m);
 }
 
+haptel_sample sampled(const TextureBinding& binding, const haptel_point& point, FoundHeights& found)
+{
+    haptel_sample result = blank_sample;
+    binding.texture->height_gradient(&point, binding.block, &result);
+    found.minimum_m = std::min(found.minimum_m, result.height_m);
+    found.maximum_m = std::max(found.maximum_m, result.height_m);
+    return result;
+}
+
 class HeightSearch {
 public:
     HeightSearch(const TextureBinding& of, const TextureRequest& over) : binding(of), request(over)
@@ -122,14 +131,7 @@ private:
                is_proven_well(binding.facts, found);
     }
 
-    haptel_sample sample(const haptel_point& point)
-    {
-        haptel_sample result = blank_sample;
-        binding.texture->height_gradient(&point, binding.block, &result);
-        found.minimum_m = std::min(found.minimum_m, result.height_m);
-        found.maximum_m = std::max(found.maximum_m, result.height_m);
-        return result;
-    }
+    haptel_sample sample(const haptel_point& point) { return sampled(binding, point, found); }
 
     // The point `way` farther, within the box: coordinates of the mesh and normals go along, so that what reads them
     // alone is climbed as well.
@@ -186,13 +188,8 @@ FoundHeights heights_of_few(const TextureBinding& binding, const TextureRequest&
     const uint64_t operations = std::max<uint64_t>(binding.facts.operations_max, 1);
     FoundHeights heights = nothing_found;
     ObjectPoints points(request);
-    for (uint64_t left = std::clamp(operations_of_few / operations, calls_least, calls_of_few); left > 0; --left) {
-        const haptel_point point = points.next();
-        haptel_sample sample = blank_sample;
-        binding.texture->height_gradient(&point, binding.block, &sample);
-        heights.minimum_m = std::min(heights.minimum_m, sample.height_m);
-        heights.maximum_m = std::max(heights.maximum_m, sample.height_m);
-    }
+    for (uint64_t left = std::clamp(operations_of_few / operations, calls_least, calls_of_few); left > 0; --left)
+        sampled(binding, points.next(), heights);
     return heights;
 }
 
@@ -242,6 +239,9 @@ bool stretch_envelope(TextureBinding& binding, const TextureBinding& before, con
         }
     }
     const double range_m = facts.height_max_m - facts.height_min_m;
+    // A short proof can be far too wide, where a longer one is not: of a surface so low nobody would feel anything.
+    const double range_before_m = before.facts.height_max_m - before.facts.height_min_m;
+    if (range_m > wide_proof * range_before_m && !is_proven_well(facts, heights_of_few(binding, request))) return false;
     return std::isfinite(range_m) && range_m >= 0.5 * (binding.shoulder_m[0] + binding.shoulder_m[1]);
 }
 

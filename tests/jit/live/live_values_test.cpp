@@ -112,3 +112,33 @@ TEST_CASE(
     std::this_thread::sleep_for(300ms);
     CHECK(static_cast<size_t>(follower.publications()) == published);
 }
+
+TEST_CASE("a value that is refused leaves the range of the one before to be found")
+{
+    const std::string text =
+        std::string(test::idioms) +
+        "texture t(float size = 3mm, int n = 1 in 1 .. 20000) { float h = 0.0; for (int i = 0; i < n; ++i) h += "
+        "sin(p.x / 1mm + float(i)); return 50um * simplex_plane(p.xy / size) + 0.0 * clamp(h, -1.0, 1.0) * 1um; }";
+    const auto program = test::compiled(text);
+    const auto request_of = [](const char* size) {
+        TextureRequest request = test::request_over(0.05);
+        request.parameters = {{"size", size}};
+        return request;
+    };
+    const TextureBinding before = jit::make_binding(program, "t", request_of("4mm")).binding.value();
+    const auto once = Follower::range_of(
+                   jit::make_binding_at_once(program, "t", request_of("5mm"), before).binding.value()),
+               patient = Follower::range_of(jit::make_binding(program, "t", request_of("5mm")).binding.value());
+    REQUIRE(once != patient);
+
+    const test::Folder folder;
+    folder.write("t.haptel", text);
+    Follower follower(folder, {}, 1e-4); // a call may take 20 us
+    follower.texture->set_parameter("size", "4mm");
+    REQUIRE(follower.comes_to_range(Follower::range_of(before)));
+    follower.texture->set_parameter("size", "5mm");
+    REQUIRE(follower.comes_to_range(once));
+    follower.texture->set_parameter("n", "20000");
+    CHECK(follower.says("per call (median), more than the 20 us"));
+    CHECK(follower.comes_to_range(patient));
+}
