@@ -123,9 +123,9 @@ struct FoundHeights {
 TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view texture,
                            const TextureRequest& request, For use = For::hand, FoundHeights* found = nullptr);
 
-// For a hand that turns a knob, within a millisecond or two where a call takes some microseconds. `before` is of the same
-// program, texture and pictures with other values, by make_binding. The range of heights may be another than that of
-// make_binding; it is as true. Neither a binding nor diagnostics: so soon nothing can be said of the range.
+// For a hand that turns a knob, within a millisecond or two where a call takes some microseconds. `before` is of the
+// same program, texture and pictures with other values, by make_binding. The range of heights may be another than that
+// of make_binding; it is as true. Neither a binding nor diagnostics: so soon nothing can be said of the range.
 TextureResult make_binding_at_once(const std::shared_ptr<const CompiledProgram>& program, std::string_view texture,
                                    const TextureRequest& request, const TextureBinding& before);
 
