@@ -233,7 +233,7 @@ TextureResult bound(const std::shared_ptr<const CompiledProgram>& program, std::
     }
     binding.band_limited = is_band_limited(binding, request);
     if (before) {
-        if (!stretch_envelope(binding, *before, request)) return {};
+        if (!texture->height_gradient || !stretch_envelope(binding, *before, request)) return {};
         return {std::move(binding), std::move(findings.remarks)};
     }
     if (use == For::hand && texture->height_gradient) {
