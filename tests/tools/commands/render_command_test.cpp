@@ -132,8 +132,13 @@ TEST_CASE("a card is given what a file would hold")
 TEST_CASE("playing ends cleanly on Ctrl-C")
 {
     const RidgedFloor floor;
-    const Ran ran = run_command("render '" + floor.scene + "' --play null --full-scale 1N", "timeout --signal INT 3");
+    // Interrupted once it listens (bit 1 of the signals that it catches), however long the scene took to load.
+    const std::string interrupting =
+        "timeout -s KILL 60 sh -c '\"$@\" & while kill -0 $! && ! grep -q \"^SigCgt.*[2367abef]$\" "
+        "/proc/$!/status; do sleep 0.01; done; sleep 1; kill -INT $!; wait $!' sh";
+    const Ran ran = run_command("render '" + floor.scene + "' --play null --full-scale 1N", interrupting);
     INFO(ran.err);
+    CHECK(ran.code == 0);
     CHECK(contains(ran.out, "null: "));
     CHECK(contains(ran.out, "  gaps         0\n"));
 }
