@@ -47,11 +47,16 @@ bool is_same_range(const TextureBinding& one, const TextureBinding& other)
 // The one thread that compiles for live textures: waits for files to change and tells its clients.
 class CompileThread {
 public:
+    struct Round {
+        bool of_files = true;      // some may have changed; else values alone have come
+        bool is_writing = false;   // somebody is at a file, which is looked at when that is over
+        bool may_take_long = true; // one update a round: a value waits for no more
+    };
     struct Place {
         std::mutex at_work; // held during an update
-        // Looks whether files have changed, and acts; what takes long and nobody waits for, it does only if it may, and
+        // Looks at what may have changed, and acts; what takes long and nobody waits for, it does only if it may, and
         // then says that no other may. Throws nothing. Null: no more.
-        std::function<void(bool& may_take_long)> update;
+        std::function<void(Round&)> update;
         std::set<std::string> watched;        // files, as of the last update
         std::optional<Clock::time_point> due; // of the next update, at the latest
     };
@@ -96,16 +101,18 @@ private:
     void run(const std::stop_token& stop)
     {
         Settling settling;
-        Clock::time_point due = Clock::now();
+        Clock::time_point files_due = Clock::now();
         while (!stop.stop_requested()) {
-            const bool is_woken = wait(due);
+            const bool is_woken = wait(std::min(files_due, clients_due));
             const FileWatch::Change change = watch.take();
             const auto now = Clock::now();
-            if (change != FileWatch::Change::none) due = settling.due_after(change, now);
-            if (now < due && (!is_woken || settling.is_awaited())) continue;
-            update_clients();
+            if (change != FileWatch::Change::none) files_due = settling.due_after(change, now);
+            const bool of_files = now >= files_due;
+            if (!of_files && !is_woken && now < clients_due) continue;
+            update_clients({.of_files = of_files, .is_writing = !of_files && settling.is_awaited()});
+            if (!of_files) continue;
             settling.read();
-            due = std::min(Clock::now() + unasked, clients_due);
+            files_due = Clock::now() + unasked;
         }
     }
 
@@ -120,7 +127,7 @@ private:
     }
 
     // Of those that there are at the start: who is added meanwhile wakes the thread anew.
-    void update_clients()
+    void update_clients(Round round)
     try {
         clients_due = Clock::time_point::max();
         std::unique_lock lock(places_mutex);
@@ -128,11 +135,10 @@ private:
         const std::vector<std::shared_ptr<Place>> all = places;
         lock.unlock();
         std::set<std::string> files;
-        bool may_take_long = true; // one a round: a value waits for no more
         for (const auto& place : all) {
             const std::lock_guard at_work(place->at_work);
             if (!place->update) continue;
-            place->update(may_take_long);
+            place->update(round);
             files.insert(place->watched.begin(), place->watched.end());
             clients_due = std::min(clients_due, place->due.value_or(clients_due));
         }
@@ -163,7 +169,7 @@ public:
     {
         if (in_hand && in_hand->program) pictures_in_hand = pictures_of(*in_hand->program);
         place->watched = {reference.file};
-        place->update = [this](bool& may_take_long) { update(may_take_long); };
+        place->update = [this](CompileThread::Round& round) { update(round); };
         place->due = Clock::now(); // to know the range of what is in the hand
         thread->add(place);
     }
@@ -302,15 +308,21 @@ private:
         for (const UsedPicture& picture : pictures_in_hand) place->watched.insert(picture.file);
     }
 
-    void follow(bool& may_take_long)
+    void follow(CompileThread::Round& round)
     {
+        if (round.is_writing && !pictures_in_hand.empty()) { // of which a value reads one, half written maybe
+            if (place->due) place->due = Clock::now() + rest;
+            return;
+        }
         const bool edited = take_edits(),
-                   is_at_rest = may_take_long && !edited && place->due && *place->due <= Clock::now();
+                   is_at_rest = round.may_take_long && !edited && place->due && *place->due <= Clock::now();
         if (is_at_rest) {
             place->due = Clock::now() + rest; // if it does not come to it now
-            may_take_long = false;
+            round.may_take_long = false;
         }
-        const auto compiled = cache->load(reference.file);
+        // A value waits for no file to be read.
+        const auto compiled = round.of_files || !has_looked ? cache->load(reference.file) : in_hand;
+        has_looked = true;
         watch(*compiled);
         if (!compiled->program) {
             in_hand = compiled;
@@ -341,9 +353,9 @@ private:
     }
 
     // Nothing that happens here may end the thread, and with it the process and the force in somebody's hand.
-    void update(bool& may_take_long) noexcept
+    void update(CompileThread::Round& round) noexcept
     try {
-        follow(may_take_long);
+        follow(round);
     } catch (const std::exception& problem) {
         failed(problem.what());
     } catch (...) {
@@ -355,6 +367,7 @@ private:
     const LiveCallbacks callbacks;
     const std::shared_ptr<ProgramCache> cache;
 
+    bool has_looked = false;                         // at the files
     std::shared_ptr<const CompiledTextures> in_hand; // what was looked at last; broken ones too
     std::shared_ptr<const CompiledTextures> usable;  // the last one that has a program
     std::vector<UsedPicture> pictures_in_hand;       // as of the last look

@@ -56,6 +56,10 @@ public:
     {
         return comes_true([&] { return std::fabs(height_um - um) < 1e-9; });
     }
+    bool comes_to_publications(int count)
+    {
+        return comes_true([&] { return published == count; });
+    }
     bool says(const std::string& part)
     {
         return comes_true([&] { return contains(reported, part); });

@@ -2,6 +2,7 @@
 #include "tests/jit/live/follower.h"
 #include "tests/jit/texture/idioms.h"
 
+#include <fstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -30,6 +31,45 @@ TEST_CASE("values survive a reload by name and type, and sliders need no compile
     CHECK(follower.says("error"));
     follower.texture->set_parameter("depth", "42um");
     CHECK(follower.comes_to(42)); // of the last texture that compiled
+}
+
+TEST_CASE("a value waits for no file that is being written, but for a picture of its texture")
+{
+    const auto are_watched = [](Follower& follower) { // the files: at the latest when the second value is felt
+        for (const int publications : {1, 2}) {
+            follower.texture->set_parameter("depth", std::to_string(20 + publications) + "um");
+            CHECK(follower.comes_to_publications(publications));
+        }
+    };
+    const test::Folder folder;
+    SECTION("source")
+    {
+        folder.write("t.haptel", constant("1"));
+        Follower follower(folder, {{"depth", "40um"}});
+        are_watched(follower);
+        std::ofstream open(folder.file("t.haptel"));
+        open << "texture t(float depth = 1um in 0um .. 1mm) { return depth + 1um; }" << std::flush;
+        follower.texture->set_parameter("depth", "41um");
+        CHECK(follower.comes_to(41)); // of the text that was there
+        CHECK(follower.comes_to(42)); // nobody writes on
+    }
+    SECTION("picture")
+    {
+        folder.write("t.haptel", "texture t(image relief, float depth = 1um in 0um .. 1mm) { return depth * "
+                                 "sample(relief, vec2(0.5)); }");
+        folder.write("relief.pgm", "P5 2 1 255\n" + std::string(2, '\x33'));
+        Follower follower(folder, {{"relief", folder.file("relief.pgm")}});
+        are_watched(follower);
+        std::ofstream open(folder.file("relief.pgm"));
+        open << "P5 2 1 255\n" << std::flush;
+        follower.texture->set_parameter("depth", "12.5um");
+        std::this_thread::sleep_for(30ms);
+        open << std::string(2, '\x66') << std::flush;
+        open.close();
+        CHECK(follower.comes_to(5)); // 12.5 um x 0.4
+        CHECK(follower.publications() == 3);
+        CHECK_FALSE(contains(follower.said(), "error")); // of a picture that was read too early
+    }
 }
 
 TEST_CASE("a vector is set as a whole and by its components, a choice by its name, as long as they are there")
