@@ -140,7 +140,7 @@ private:
             if (!place->update) continue;
             place->update(round);
             files.insert(place->watched.begin(), place->watched.end());
-            clients_due = std::min(clients_due, place->due.value_or(clients_due));
+            if (!round.is_writing) clients_due = std::min(clients_due, place->due.value_or(clients_due));
         }
         watch.watch(files);
     } catch (...) {
@@ -310,25 +310,23 @@ private:
 
     void follow(CompileThread::Round& round)
     {
-        if (round.is_writing && !pictures_in_hand.empty()) { // of which a value reads one, half written maybe
-            if (place->due) place->due = Clock::now() + rest;
-            return;
-        }
+        // A value needs no look at the files, but a binding reads pictures, which may be half written.
+        const bool looks = round.of_files || !has_looked || !in_hand;
+        if (round.is_writing && (looks || !pictures_in_hand.empty())) return;
         const bool edited = take_edits(),
                    is_at_rest = round.may_take_long && !edited && place->due && *place->due <= Clock::now();
         if (is_at_rest) {
             place->due = Clock::now() + rest; // if it does not come to it now
             round.may_take_long = false;
         }
-        // A value waits for no file to be read.
-        const auto compiled = round.of_files || !has_looked ? cache->load(reference.file) : in_hand;
+        const auto compiled = looks ? cache->load(reference.file) : in_hand;
         has_looked = true;
         watch(*compiled);
         if (!compiled->program) {
             in_hand = compiled;
             if (edited && usable) make_and_publish(true); // a slider works on while the file is broken
             if (is_at_rest) complete_range();
-            if (!is_forgiven(compiled->has_finding("unreadable-file"))) report(compiled->rendered());
+            if (looks && !is_forgiven(compiled->has_finding("unreadable-file"))) report(compiled->rendered());
             return;
         }
         std::vector<UsedPicture> pictures = pictures_of(*compiled->program);
