@@ -10,6 +10,7 @@
 #include "stdlib/stdlib.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
+#include "tools/arguments/texture_files.h"
 #include "tools/commands/check_watch.h"
 #include "tools/commands/command.h"
 #include "tools/commands/explain.h"
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
@@ -317,11 +319,22 @@ struct Outcome {
     std::set<std::string> files; // that it depends on
 };
 
+// A folder stands for its texture files; one without any is said to be no file.
+std::vector<std::string> files_at(const std::string& path)
+{
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error)) return {libraries::path_named(path)};
+    std::vector<std::string> files;
+    for (const TextureTarget& target : texture_targets({path}, true)) files.push_back(target.file);
+    return files.empty() ? std::vector{path} : files;
+}
+
 // Once, with its report.
 Outcome check_all(const CheckOptions& options)
 {
     CheckRun checks(options);
-    for (const std::string& file : options.files) checks.check(libraries::path_named(file));
+    for (const std::string& path : options.files)
+        for (const std::string& file : files_at(path)) checks.check(file);
     checks.report_unknown_parameters();
     if (options.json)
         print_json(checks.report.to_json());
@@ -334,7 +347,7 @@ ExitCode run(const CheckOptions& options)
 {
     if (options.explain->count() > 0) return explain(options.code, options.json);
     if (options.files.empty()) {
-        say_error("check needs a texture file: haptel check FILE...");
+        say_error("check needs a texture file, or a folder of them: haptel check PATH...");
         return ExitCode::misuse;
     }
     for (const std::string& path : options.files)
@@ -355,7 +368,7 @@ Command check_command(CLI::App& app)
     const auto options = std::make_shared<CheckOptions>();
     CLI::App* command =
         app.add_subcommand("check", "Find mistakes in texture files; say how high, steep and smooth textures are");
-    command->add_option("files", options->files, "Texture files")->type_name("FILE");
+    command->add_option("files", options->files, "Texture files, and folders of them")->type_name("PATH");
     add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
                NumberRange::not_negative);
@@ -378,7 +391,7 @@ Command check_command(CLI::App& app)
                       "Measured time of a call, and worst-case cost of each line, the most expensive first");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel check rock.haptel\n"
-                           "  haptel check --strict examples/textures/*.haptel\n"
+                           "  haptel check --strict examples/textures\n"
                            "  haptel check rock.haptel --box 50mm --set depth=0.1mm --json\n"
                            "  haptel check --max-error 1e-5 rock.haptel\n"
                            "  haptel check --fix rock.haptel\n"

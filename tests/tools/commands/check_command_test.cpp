@@ -132,6 +132,24 @@ TEST_CASE("check: several files, what they import is said once")
     CHECK(errors == 1);
 }
 
+TEST_CASE("check: a folder stands for the texture files in it, at any depth")
+{
+    const Folder folder;
+    for (const char* name : {"deep", "empty"}) std::filesystem::create_directory(folder.file(name));
+    folder.write("fine.haptel", "texture fine() { return 0.0; }\n");
+    folder.write("deep/functions.haptel", "float lost(float x) { return x + y; }\n");
+    folder.write("deep/notes.txt", "no texture\n");
+    const Ran ran = run_command("check --json '" + folder.path.string() + "'");
+    CHECK(ran.code == 1);
+    const Json json = Json::parse(ran.out);
+    CHECK(json["textures"].size() == 1);
+    REQUIRE(json["diagnostics"].size() == 1);
+    CHECK(json["diagnostics"][0]["file"] == folder.file("deep/functions.haptel"));
+    const Ran empty = run_command("check '" + folder.file("empty") + "'");
+    CHECK(empty.code == 1);
+    CHECK(contains(empty.err, "it is a folder"));
+}
+
 TEST_CASE("check: what cannot be read is a finding at 1:1, and JSON stays JSON")
 {
     const Folder folder;
