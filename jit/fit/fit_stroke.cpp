@@ -12,8 +12,8 @@ namespace haptel::jit {
 namespace {
 
 constexpr std::size_t samples_min = 128;
-// One line of a rough texture is not like another.
-constexpr std::size_t lines_at_first = 4, lines_at_last = 32;
+// One line of a rough texture is not like another: of oak, 32 lines have pores by a decibel more or less than all.
+constexpr std::size_t lines_at_first = 4, lines_at_second = 32, lines_at_last = 128;
 constexpr FitEffort of_strokes{24, 40, 4};
 
 // Samples of a line, so that the lowest third of an octave that is felt has four frequencies.
@@ -50,6 +50,7 @@ FitResult fit_stroke(const std::shared_ptr<const CompiledProgram>& program, cons
 
     std::vector<std::unique_ptr<Misfit>> levels;
     levels.push_back(std::make_unique<SpectrumMisfit>(fit.texture(), stroke, samples, lines_at_first));
+    levels.push_back(std::make_unique<SpectrumMisfit>(fit.texture(), stroke, samples, lines_at_second));
     auto last = std::make_unique<SpectrumMisfit>(fit.texture(), stroke, samples, lines_at_last);
     SpectrumMisfit& whole = *last;
     levels.push_back(std::move(last));
