@@ -95,23 +95,30 @@ private:
 void edit_while_it_is_felt(int times)
 {
     LiveStage stage("texture t() { return 60um; }\n");
-    const LiveRun still = LiveRun::of(stage, std::min(times, 1000),
-                                      [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); });
-    Editor editor(stage.folder, 3);
+    const Folder unwatched;
+    Editor editor(stage.folder, 3), other_editor(unwatched, 3);
     std::mt19937_64 random(4);
     std::size_t said = 0;
     const uint64_t serial = stage.slot().newest_serial();
-    const LiveRun edited = LiveRun::of(stage, times, [&](int) {
-        editor.edit();
-        std::this_thread::sleep_for(std::chrono::milliseconds(random() % 40));
-        said += stage.textures.take_messages().size();
-    });
-    WARN("missed deadlines: " << edited.report.missed_deadlines << " of " << edited.report.ticks << " ticks, "
-                              << still.report.missed_deadlines << " of " << still.report.ticks << " without edits; "
-                              << stage.textures.compiled() << " compiled, " << stage.slot().newest_serial() - serial
-                              << " felt; force " << edited.force_min_n << " .. " << edited.force_max_n
-                              << " N, largest step " << edited.step_max_n << " N in a period; heap grew by "
-                              << edited.heap_growth << " bytes, resident by " << edited.resident_growth);
+    const auto pause = [&] { std::this_thread::sleep_for(std::chrono::milliseconds(random() % 40)); };
+    const LiveRun edited = LiveRun::of(
+        stage, times,
+        [&](int) {
+            editor.edit();
+            pause();
+            said += stage.textures.take_messages().size();
+        },
+        [&](int) {
+            other_editor.edit();
+            pause();
+        });
+    WARN("missed deadlines: " << edited.meddled.missed << " of " << edited.meddled.ticks << " ticks, "
+                              << edited.in_control.missed << " of " << edited.in_control.ticks
+                              << " while files are edited that nobody feels; " << stage.textures.compiled()
+                              << " compiled, " << stage.slot().newest_serial() - serial << " felt; force "
+                              << edited.force_min_n << " .. " << edited.force_max_n << " N, largest step "
+                              << edited.step_max_n << " N in a period; heap grew by " << edited.heap_growth
+                              << " bytes, resident by " << edited.resident_growth);
     CHECK(edited.report.state == runtime::ServoState::stopped);
     CHECK(edited.report.allocations_in_tick == 0);
     CHECK(edited.report.faults == 0);

@@ -102,15 +102,24 @@ inline int64_t resident_bytes()
     return resident * sysconf(_SC_PAGESIZE);
 }
 
+// Deadlines of a servo over some time.
+struct Deadlines {
+    uint64_t missed = 0, ticks = 0;
+};
+
 // A servo of 1 kHz that feels the stage, and what became of it.
 struct LiveRun {
     runtime::ServoReport report;
+    Deadlines meddled, in_control;             // of runs with a control
     double force_max_n = 0, force_min_n = 1e9; // once the finger rests
     double step_max_n = 0;                     // change of the force in a period, likewise
     int64_t heap_growth = 0, resident_growth = 0;
 
-    // `meddle(i)` is called `times` times while it runs; growth is counted from the first tenth on.
-    static LiveRun of(LiveStage& stage, int times, const std::function<void(int)>& meddle)
+    // `meddle(i)` is called `times` times while it runs; growth is counted from the first tenth on. With a `control`,
+    // which should change nothing, that is called in turns with it, a hundred times each: deadlines that the system
+    // misses of itself come in bursts, so a run of its own would not tell them.
+    static LiveRun of(LiveStage& stage, int times, const std::function<void(int)>& meddle,
+                      const std::function<void(int)>& control = {})
     {
         runtime::ServoOptions options;
         options.allocation_count = runtime::allocations_of_this_thread;
@@ -129,13 +138,28 @@ struct LiveRun {
                 before = now;
             }
         };
+        Deadlines counted;
+        const auto count_for = [&](Deadlines& part) { // what was missed since the last count
+            drain();
+            const Deadlines now_at = {servo.missed_deadlines(), before.tick};
+            part.missed += now_at.missed - counted.missed;
+            part.ticks += now_at.ticks - counted.ticks;
+            counted = now_at;
+        };
         servo.start();
         while (before.tick < 600 && servo.running()) drain(), usleep(1000);
+        Deadlines start;
+        count_for(start);
         int64_t heap = 0, resident = 0;
         for (int i = 0; i < times; ++i) {
             if (i == times / 10) heap = heap_bytes(), resident = resident_bytes();
             meddle(i);
             drain();
+            if (!control || i % 100 != 99) continue;
+            for (int wait = 0; wait < 300; ++wait) drain(), usleep(1000); // until what was begun is compiled
+            count_for(run.meddled);
+            for (int j = i - 99; j <= i; ++j) control(j), drain();
+            count_for(run.in_control);
         }
         run.heap_growth = heap_bytes() - heap;
         run.resident_growth = resident_bytes() - resident;
