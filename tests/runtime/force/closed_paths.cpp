@@ -185,7 +185,12 @@ TEST_CASE("in a smooth valley narrower than the ball closed paths give a few per
         return std::uniform_real_distribution<double>(from, to)(random);
     };
     for (int i = 0; i < tries(20); ++i) {
-        Path path{{uniform(-1e-3, 1e-3), uniform(-5e-3, 5e-3), 1e-3}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+        Path path;
+        path.from = dvec3(uniform(-1e-3, 1e-3), 0, 1e-3);
+        path.from.y = uniform(-5e-3, 5e-3);
+        path.normal = dvec3(0, 0, 1);
+        path.along = dvec3(1, 0, 0);
+        path.across = dvec3(0, 1, 0);
         path.width_m = uniform(0.2e-3, 2e-3);
         path.breadth_m = uniform(0.2e-3, 4e-3);
         path.depth_m = uniform(0.3e-3, 2e-3);
