@@ -148,8 +148,7 @@ struct LiveRun {
         };
         servo.start();
         while (before.tick < 600 && servo.running()) drain(), usleep(1000);
-        Deadlines start;
-        count_for(start);
+        counted = {servo.missed_deadlines(), before.tick};
         int64_t heap = 0, resident = 0;
         for (int i = 0; i < times; ++i) {
             if (i == times / 10) heap = heap_bytes(), resident = resident_bytes();
