@@ -17,9 +17,12 @@
 #include <cstdint>
 #include <functional>
 #include <malloc.h>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 namespace haptel::test {
 
@@ -102,24 +105,37 @@ inline int64_t resident_bytes()
     return resident * sysconf(_SC_PAGESIZE);
 }
 
-// Deadlines of a servo over some time.
+// Deadlines that a servo missed, of 1000, in each of several stretches.
 struct Deadlines {
-    uint64_t missed = 0, ticks = 0;
+    std::vector<double> missed;
+
+    double mean() const
+    {
+        return std::accumulate(missed.begin(), missed.end(), 0.0) / static_cast<double>(missed.size());
+    }
+    double error() const // of the mean, one standard deviation
+    {
+        double squares = 0;
+        for (const double m : missed) squares += (m - mean()) * (m - mean());
+        const double count = static_cast<double>(missed.size());
+        return std::sqrt(squares / (count * std::max(1.0, count - 1)));
+    }
 };
 
 // A servo of 1 kHz that feels the stage, and what became of it.
 struct LiveRun {
+    using Meddle = std::function<void(int)>;
+
     runtime::ServoReport report;
-    Deadlines meddled, in_control;             // of runs with a control
+    std::vector<Deadlines> deadlines;          // of each that takes turns
     double force_max_n = 0, force_min_n = 1e9; // once the finger rests
     double step_max_n = 0;                     // change of the force in a period, likewise
     int64_t heap_growth = 0, resident_growth = 0;
 
-    // `meddle(i)` is called `times` times while it runs; growth is counted from the first tenth on. With a `control`,
-    // which should change nothing, that is called in turns with it, a hundred times each: deadlines that the system
-    // misses of itself come in bursts, so a run of its own would not tell them.
-    static LiveRun of(LiveStage& stage, int times, const std::function<void(int)>& meddle,
-                      const std::function<void(int)>& control = {})
+    // `meddle(i)` is called `times` times while it runs; growth is counted from the first tenth on. `others`, which
+    // should change nothing, take turns with it, a hundred times each: deadlines that the system misses of itself come
+    // in bursts, so runs of their own would not tell them.
+    static LiveRun of(LiveStage& stage, int times, const Meddle& meddle, const std::vector<Meddle>& others = {})
     {
         runtime::ServoOptions options;
         options.allocation_count = runtime::allocations_of_this_thread;
@@ -138,27 +154,29 @@ struct LiveRun {
                 before = now;
             }
         };
-        Deadlines counted;
-        const auto count_for = [&](Deadlines& part) { // what was missed since the last count
-            drain();
-            const Deadlines now_at = {servo.missed_deadlines(), before.tick};
-            part.missed += now_at.missed - counted.missed;
-            part.ticks += now_at.ticks - counted.ticks;
-            counted = now_at;
+        run.deadlines.resize(others.size() + 1);
+        uint64_t missed = 0, tick = 0;
+        const auto count_for = [&](std::size_t turn) {                    // since the last count
+            for (int wait = 0; wait < 300; ++wait) drain(), usleep(1000); // until what was begun is compiled
+            const uint64_t missed_before = std::exchange(missed, servo.missed_deadlines()),
+                           tick_before = std::exchange(tick, before.tick);
+            run.deadlines[turn].missed.push_back(1000 * static_cast<double>(missed - missed_before) /
+                                                 static_cast<double>(missed - missed_before + tick - tick_before));
         };
         servo.start();
         while (before.tick < 600 && servo.running()) drain(), usleep(1000);
-        counted = {servo.missed_deadlines(), before.tick};
+        missed = servo.missed_deadlines(), tick = before.tick;
         int64_t heap = 0, resident = 0;
         for (int i = 0; i < times; ++i) {
             if (i == times / 10) heap = heap_bytes(), resident = resident_bytes();
             meddle(i);
             drain();
-            if (!control || i % 100 != 99) continue;
-            for (int wait = 0; wait < 300; ++wait) drain(), usleep(1000); // until what was begun is compiled
-            count_for(run.meddled);
-            for (int j = i - 99; j <= i; ++j) control(j), drain();
-            count_for(run.in_control);
+            if (others.empty() || i % 100 != 99) continue;
+            count_for(0);
+            for (std::size_t other = 0; other < others.size(); ++other) {
+                for (int j = i - 99; j <= i; ++j) others[other](j), drain();
+                count_for(other + 1);
+            }
         }
         run.heap_growth = heap_bytes() - heap;
         run.resident_growth = resident_bytes() - resident;
