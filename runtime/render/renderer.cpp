@@ -160,7 +160,7 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
             if (sleeps(number, pose)) --i;
             continue;
         }
-        for (const PartContacts& part : parts) render_object(body, contacts, part, pose, result, skipped);
+        render_contacts(body, contacts, parts, pose, result, skipped);
     }
     const OnHand& left = swapped_ ? sent_ : left_;
     const double left_work_j = last_pose_ && left != OnHand() ? work_j(left, *last_pose_, pose) : 0.0;

@@ -139,6 +139,23 @@ private:
 
         void mix_in(const ObjectForce& other, double share, const glm::dvec3& share_dp) noexcept;
     };
+    // One of several contacts, in its object's space.
+    struct Row {
+        uint32_t part;
+        bool is_first; // of the part
+        Contact contact;
+        double share = 1;     // of how deep the hand is below what is touched there, held by this contact
+        double bare_m = 0;    // as deep is that
+        glm::dvec3 more_m{0}; // by which its spring pushes beyond its share of that, world frame
+
+        Contact whole() const // as if it held all of it
+        {
+            Contact all = contact;
+            all.depth_m /= share;
+            all.lag_m /= share;
+            return all;
+        }
+    };
     struct Skipped { // in this tick
         bool query = true, texture = true, octaves = false, mapping = false;
     };
@@ -160,8 +177,13 @@ private:
     void fade_shares(Degradation degradation, uint64_t periods) noexcept;
     void add_force(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
     std::span<const Contact> update_contact(Body& body, const ProbePose& pose, const EndsFriction& friction) noexcept;
-    void render_object(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
-                       TickResult& result, Skipped& skipped) noexcept;
+    void render_contacts(Body& body, std::span<const Contact> contacts, std::span<const PartContacts> parts,
+                         const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
+    std::span<Row> rows_of(const Body& body, std::span<const Contact> contacts,
+                           std::span<const PartContacts> parts) noexcept;
+    void hold_together(const Body& body, std::span<Row> rows, bool tail) noexcept;
+    void feel(Body& body, uint32_t part, bool is_first, const Contact& contact, const ObjectForce& force,
+              const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
     double grown_since_m(const Renderer& before) const noexcept; // a ball in place of another
     double farthest_held_m(const Body& old, const Renderer& before) const noexcept;
     void put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept;
@@ -178,6 +200,7 @@ private:
     void update_effects(Body& body, std::span<const Contact> contacts, std::span<const PartContacts> parts) noexcept;
     bool feels_in_air(const Body& body, const DevicePose& pose) noexcept;
     bool is_smooth(const Surface& surface) const noexcept;
+    Foot foot_of(Touched& touched, const Contact& contact) const noexcept;
     ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement,
                          const Contact& contact) noexcept;
     ObjectForce force_by_shaft(const Body& body, const Material& material, const Placement& placement,
@@ -236,6 +259,7 @@ private:
     CreaseRows crease_rows_;
     SmoothRows smooth_rows_;
     ContactsByPart by_part_;
+    std::array<Row, CreaseRows::rows_most> rows_;
 };
 
 } // namespace haptel::runtime

@@ -21,28 +21,6 @@ double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
     return along == glm::dvec3(0) ? 0.0 : glm::dot(force_n, glm::normalize(along));
 }
 
-// From the hand to the proxy by all that holds one end of the probe, in the body's space. Zero where one thing does.
-glm::dvec3 shared_way_m(int end, std::span<const Contact> contacts)
-{
-    glm::dvec3 way_m(0);
-    int holding = 0;
-    for (const Contact& contact : contacts) {
-        if ((contact.along > 0) != (end == 1) || contact.by_shaft) continue;
-        way_m += contact.depth_m * contact.normal;
-        ++holding;
-    }
-    return holding > 1 ? way_m : glm::dvec3(0);
-}
-
-// What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
-// hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
-// the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
-double share_of(const Contact& contact, const glm::dvec3& way_m)
-{
-    const double below_m = glm::dot(way_m, contact.normal);
-    return contact.depth_m > 0 && contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
-}
-
 } // namespace
 
 // On the probe at the share `along` of the way from its tip to its tail.
@@ -60,63 +38,6 @@ void Renderer::add_force(TickResult& result, const DevicePose& pose, double alon
 bool Renderer::is_smooth(const Surface& surface) const noexcept
 {
     return surface.normal_turn_max_per_m > 0 && force_rule_.shading == ForceShading::smooth;
-}
-
-// One object, of all `contacts` of its body those with it.
-void Renderer::render_object(Body& body, std::span<const Contact> contacts, const PartContacts& part,
-                             const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
-{
-    Touched& touched = objects_[body.objects.number(part.part)];
-    const Placement& placement = body.placement_of(*touched.object);
-    ++result.contacts;
-    const bool alone = contacts.size() == 1;
-    std::span<const Contact> rows = part.contacts;
-    std::array<glm::dvec3, 2> way_m; // of the tip and the tail, in the object's space
-    if (!alone) {
-        for (const int end : {0, 1}) {
-            way_m[end] = shared_way_m(end, contacts);
-            if (body.objects.joined) way_m[end] = placement.direction_to_object(way_m[end]);
-        }
-        if (rows.size() > 1 && is_smooth(*touched.object->surface))
-            rows = smooth_rows_.of(*touched.object->surface, rows, way_m, probe_.radius_m, touched.lines);
-    }
-    swing_on(touched);
-    for (const Contact& contact : rows) { // what presses most first, of a stylus its tip
-        const double share = alone || contact.by_shaft ? 1 : share_of(contact, way_m[contact.along > 0]);
-        ObjectForce force;
-        if (share < 1) {
-            Contact whole = contact; // as if it held all of it
-            whole.depth_m /= share;
-            whole.lag_m /= share;
-            force = force_of(body, touched, placement, whole);
-            force.force_n *= share;
-            force.held_j *= share;
-        } else {
-            force = force_of(body, touched, placement, contact);
-        }
-        add_force(result, pose, contact.along, force.force_n);
-        result.faults |= force.faults;
-        held_j_ += force.held_j;
-        skipped.texture = skipped.texture && !force.textured;
-        skipped.octaves = skipped.octaves || force.band_limited;
-        skipped.mapping = skipped.mapping || force.unmapped;
-        if (!contact.by_shaft) {
-            const Material& material = touched.object->material;
-            MeanFriction& end = contact.along == 0 ? body.tip_friction : body.tail_friction;
-            if (body.objects.joined && force.grain.is_there) force.grain = turned(force.grain, placement.rotation);
-            end.add({material.static_friction * force.static_share, material.dynamic_friction * force.dynamic_share,
-                     force.grain},
-                    material.stiffness_n_per_m * contact.depth_m);
-        }
-        if (&contact != rows.data()) continue;
-        touched.swing_hz = force.swing_hz;
-        if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
-        result.depth_m = contact.depth_m;
-        result.height_m = force.height_m;
-        result.normal = force.normal;
-        result.object = body.objects.number(part.part) + 1;
-        result.binding = touched.texture.to().serial;
-    }
 }
 
 // What a tick without contact is spared: the texture where the hand is, and whether there is one.
@@ -176,14 +97,10 @@ Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material&
     return result;
 }
 
-Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement,
-                                         const Contact& contact) noexcept
+// Of flat facets, and where contact tells a direction of its own, there is one foot.
+Foot Renderer::foot_of(Touched& touched, const Contact& contact) const noexcept
 {
     const Surface& surface = *touched.object->surface;
-    if (contact.depth_m == 0 && scene_->servo.skips.texture)
-        return {}; // the highest texture reaches up to the base and no further
-    if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
-    // Of flat facets, and where contact tells a direction of its own, there is one foot.
     const bool curved =
         surface.normal_turn_max_per_m > 0 && contact.touching && !contact.on_crease && !contact.unsettled;
     const bool smooth = curved && is_smooth(surface);
@@ -192,6 +109,16 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
         : curved ? paper_foot(surface, contact)
                  : flat_foot(contact);
     if (foot.share == 0) foot.share = 1; // the flat one
+    return foot;
+}
+
+Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement,
+                                         const Contact& contact) noexcept
+{
+    if (contact.depth_m == 0 && scene_->servo.skips.texture)
+        return {}; // the highest texture reaches up to the base and no further
+    if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
+    const Foot foot = foot_of(touched, contact);
     ObjectForce force = force_at(foot, body, touched, placement, contact);
     if (foot.share < 1) {
         const ObjectForce flat = force_at(flat_foot(contact), body, touched, placement, contact);
