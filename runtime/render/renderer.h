@@ -145,7 +145,7 @@ private:
         bool is_first; // of the part
         Contact contact;
         double share = 1;     // of how deep the hand is below what is touched there, held by this contact
-        double bare_m = 0;    // as deep is that
+        double bare_m = 0;    // how deep that is, of the surface without its texture
         glm::dvec3 more_m{0}; // by which its spring pushes beyond its share of that, world frame
 
         Contact whole() const // as if it held all of it

@@ -27,6 +27,10 @@ namespace {
 
 constexpr double exact_within = 1e-9; // of the way from the hand to the proxy
 
+// Of how the depth changes along its normal. It is nearly 1, but less where the shares of a smooth and a flat foot
+// change.
+constexpr double least_slope = 0.5;
+
 bool is_held_at(const Contact& contact, bool tail)
 {
     return (contact.along > 0) == tail && !contact.by_shaft && !contact.unsettled;
@@ -75,10 +79,13 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
         Touched& touched = objects_[body.objects.number(row.part)];
         if (row.is_first) swing_on(touched);
         ObjectForce force = force_of(body, touched, body.placement_of(*touched.object), row.whole());
-        const double stiffness = touched.object->material.stiffness_n_per_m / hand_.workspace.scale;
-        const double felt_m = std::sqrt(2 * force.surface_j / stiffness); // of row.bare_m, below the texture
         force.force_n *= row.share;
-        if (felt_m > 0) force.force_n += std::min(1.0, felt_m / row.bare_m) * stiffness * row.more_m;
+        if (row.bare_m > 0) { // as much of it as of the spring is felt, below a texture and by its stiffness
+            const glm::dvec3 more_n = 2 * force.surface_j / (row.bare_m * row.bare_m) * row.more_m;
+            force.force_n += more_n;
+            const double along_n = glm::dot(force.force_n, force.normal);
+            if (along_n < 0) force.force_n -= std::max(along_n, -glm::length(more_n)) * force.normal; // never pulls
+        }
         force.held_j *= row.share;
         feel(body, row.part, row.is_first, row.contact, force, pose, result, skipped);
     }
@@ -124,6 +131,7 @@ void Renderer::hold_together(const Body& body, std::span<Row> rows, bool tail) n
     }
     if (count < 2) return;
     bool all_flat = true;
+    double off_m = 0; // by which pushes on the smooth surface differ from those on its facets
     for (std::size_t i = 0; i < count; ++i) {
         Row& row = *held[i];
         const Placement& placement = placement_of(row);
@@ -134,21 +142,31 @@ void Renderer::hold_together(const Body& body, std::span<Row> rows, bool tail) n
         const Foot foot = smooth ? foot_of(touched, whole) : flat_foot(whole);
         const auto [push_m, depth_m] = bare_push(foot, whole);
         row.bare_m = depth_m;
-        bare_m[i] = placement.direction_to_world(push_m);
+        bare_m[i] = placement.direction_to_world(row.share * push_m);
+        off_m += glm::distance(push_m * row.share, row.contact.depth_m * row.contact.normal);
         all_flat = all_flat && foot.is_flat();
         // Of the hand below the proxy it is `depth_m` over the slope away. Its push is `slope` times as long as the
         // hand is deep where the others push it, so it ends farther out than there; alone, at all of `push_m`.
-        const double length_m = glm::length(push_m), slope = length_m > 0 ? length_m / depth_m : 1.0;
+        const double length_m = glm::length(push_m),
+                     slope = length_m > 0 ? std::max(least_slope, length_m / depth_m) : 1.0;
         const glm::dvec3 normal = length_m > 0 ? push_m / length_m : whole.normal;
         planes[i].normal = placement.direction_to_world(normal);
         planes[i].offset = glm::dot(planes[i].normal, way_m) - whole.depth_m * glm::dot(normal, whole.normal) +
                            depth_m / slope + (1 - 1 / (slope * slope)) * row.share * length_m;
     }
     if (all_flat) return;
+    // The others may be so far beside their facets that they need a row before the probe touches it: up to twice as
+    // deep it takes part less, so that it begins without a step, and its force grows at most by half faster than its
+    // depth.
+    for (std::size_t i = 0; i < count; ++i) planes[i].offset -= std::max(0.0, off_m - held[i]->contact.depth_m / 2);
     const Projection<Shaft> at =
         project(std::span<const ShaftRow>(planes.data(), count), {}, exact_within * glm::length(way_m));
-    for (std::size_t i = 0; i < count; ++i) held[i]->more_m = -held[i]->share * bare_m[i];
-    for (std::size_t i = 0; i < at.count; ++i) held[at.active[i]]->more_m += at.push[i] * planes[at.active[i]].normal;
+    double pushes_m = 0;
+    for (std::size_t i = 0; i < at.count; ++i) pushes_m += at.push[i];
+    const double told = std::min(1.0, opposed_most * glm::length(at.at.tip) / pushes_m);
+    for (std::size_t i = 0; i < count; ++i) held[i]->more_m = -told * bare_m[i];
+    for (std::size_t i = 0; i < at.count; ++i)
+        held[at.active[i]]->more_m += told * at.push[i] * planes[at.active[i]].normal;
 }
 
 // Adds it to what the hand feels.

@@ -2,7 +2,7 @@
 //
 // A ball in a smooth hollow, or a point that is held as a ball, rests on several facets of one surface. They stand for
 // one place of it: from the hand they all have the same foot (runtime/force/foot.h). As one contact they are felt as
-// that place; one by one they would be felt as places beside it, by shares, which has no potential.
+// that place; one by one they would be felt as places beside it.
 #pragma once
 
 #include "runtime/contact/crease_rows.h"

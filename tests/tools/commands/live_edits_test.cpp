@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <fcntl.h>
 #include <filesystem>
 #include <random>
@@ -104,22 +105,34 @@ class EditsElsewhere {
 public:
     EditsElsewhere()
     {
+        std::signal(SIGPIPE, SIG_IGN);
         REQUIRE(pipe2(ends_, O_CLOEXEC) == 0);
         process_ = fork();
         REQUIRE(process_ >= 0);
         close(ends_[process_ > 0 ? 0 : 1]);
-        if (process_ == 0) compile_until_closed(), _exit(0);
+        if (process_ > 0) return;
+        try {
+            _exit(compile_until_closed() > 0 ? 0 : 1);
+        } catch (...) {
+            _exit(2);
+        }
     }
-    ~EditsElsewhere() { close(ends_[1]), waitpid(process_, nullptr, 0); }
+    ~EditsElsewhere()
+    {
+        int status = 0;
+        close(ends_[1]), waitpid(process_, &status, 0);
+        CHECK(status == 0); // it compiled some
+    }
 
     void edit() const { CHECK(write(ends_[1], "e", 1) == 1); }
 
 private:
-    void compile_until_closed() const
+    uint64_t compile_until_closed() const
     {
         LiveStage stage("texture t() { return 60um; }\n");
         Editor editor(stage.folder, 3);
         for (char one = 0; read(ends_[0], &one, 1) == 1; stage.textures.take_messages()) editor.edit();
+        return stage.textures.compiled();
     }
 
     int ends_[2] = {};
