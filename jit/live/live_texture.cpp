@@ -27,8 +27,8 @@ using Clock = std::chrono::steady_clock;
 // Looks at the files unasked: for what inotify does not tell, and for folders that were not there.
 constexpr auto unasked = 1s;
 // A value is felt at once, and by a range of heights that takes longer to find when none has come for so long: each
-// would be late that came meanwhile.
-constexpr auto rest = 100ms;
+// would be late that came meanwhile, or while that range fades in. A wheel that is turned clicks more often.
+constexpr auto rest = 500ms;
 // Between deleting the old file and making the new one, some editors take a while.
 constexpr auto absence_forgiven = 500ms;
 

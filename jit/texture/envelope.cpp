@@ -223,10 +223,15 @@ bool give_envelope(TextureBinding& binding, const FoundHeights& found)
 bool stretch_envelope(TextureBinding& binding, const TextureBinding& before, const TextureRequest& request)
 {
     haptel_facts& facts = binding.facts;
-    if (before.shoulder_m[0] > 0 || before.shoulder_m[1] > 0) {
-        const FoundHeights then = heights_of_few(before, request), now = heights_of_few(binding, request);
-        const double stretch = (now.maximum_m - now.minimum_m) / (then.maximum_m - then.minimum_m);
-        if (!(stretch > 0 && std::isfinite(stretch))) return false;
+    const auto range_of = [](const haptel_facts& of) { return of.height_max_m - of.height_min_m; };
+    const double range_before_m = range_of(before.facts);
+    const bool is_found = before.shoulder_m[0] > 0 || before.shoulder_m[1] > 0;
+    if (!is_found && range_of(facts) <= wide_proof * range_before_m) return true;
+    const FoundHeights then = heights_of_few(before, request), now = heights_of_few(binding, request);
+    const double stretch = (now.maximum_m - now.minimum_m) / (then.maximum_m - then.minimum_m);
+    const bool is_stretched = stretch > 0 && std::isfinite(stretch);
+    if (is_found) {
+        if (!is_stretched) return false;
         const double minimum_m = now.minimum_m - stretch * (then.minimum_m - before.facts.height_min_m),
                      maximum_m = now.maximum_m + stretch * (before.facts.height_max_m - then.maximum_m);
         if (before.shoulder_m[0] > 0 && facts.height_min_m < minimum_m) {
@@ -238,11 +243,10 @@ bool stretch_envelope(TextureBinding& binding, const TextureBinding& before, con
             binding.shoulder_m[1] = stretch * before.shoulder_m[1];
         }
     }
-    const double range_m = facts.height_max_m - facts.height_min_m;
     // A short proof can be far too wide, where a longer one is not: of a surface so low nobody would feel anything.
-    const double range_before_m = before.facts.height_max_m - before.facts.height_min_m;
-    if (range_m > wide_proof * range_before_m && !is_proven_well(facts, heights_of_few(binding, request))) return false;
-    return std::isfinite(range_m) && range_m >= 0.5 * (binding.shoulder_m[0] + binding.shoulder_m[1]);
+    const double usual_m = std::max(is_stretched ? stretch : 1, 1.0) * range_before_m;
+    if (range_of(facts) > wide_proof * usual_m && !is_proven_well(facts, now)) return false;
+    return std::isfinite(range_of(facts)) && range_of(facts) >= 0.5 * (binding.shoulder_m[0] + binding.shoulder_m[1]);
 }
 
 } // namespace haptel::jit

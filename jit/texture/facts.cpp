@@ -26,8 +26,9 @@ constexpr uint32_t evaluations_over_box = 512;
 // Of intervals, where a hand waits to feel an edit: 15 ms for the proof, and 8 to find where its ends may be. What is
 // felt of 118 public shaders is, but for 6, what a proof of 20 times that gives.
 constexpr uint64_t operations_for_hand = 150'000;
-// Where a hand turns a knob: a fifth of a tick at 1 kHz, with nothing left in the caches.
-constexpr uint64_t operations_at_once = 1'000;
+// Where a hand turns a knob: a fiftieth of a tick at 1 kHz, or one evaluation, which takes some tenths of simplex noise
+// and cells. Ten times as many say more of one texture of 178, and make nine times as many late.
+constexpr uint64_t operations_at_once = 100;
 
 // Three neighbouring inputs (a vector) from `first` on.
 void set(ir::BoundsBox& box, Input first, const double (&minimum)[3], const double (&maximum)[3])

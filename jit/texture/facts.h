@@ -16,7 +16,7 @@ haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& text
 
 // For points of the box, these values and images (by Texture::parameters, SI), this footprint, and normals and mesh
 // coordinates as the request knows them. Bounds of slope and curvature take up to a thousand times as long as those of
-// heights, which are all that a hand needs: those take up to 15 ms or, at once, 0.2.
+// heights, which are all that a hand needs: those take up to 15 ms or, at once, one evaluation.
 enum class Bounded : uint8_t { heights, heights_at_once, all };
 // Of heights alone: where the least and the greatest may be, if the bounds are true.
 struct LikelyPlaces {

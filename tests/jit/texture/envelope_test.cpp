@@ -190,6 +190,11 @@ TEST_CASE("a knob is turned at once: a range that was found is stretched, one th
 texture found(float depth = 50um, float size = 3mm) { return depth * simplex_plane(p.xy / size); }
 texture proven(float depth = 50um, float size = 3mm)
 { return 2um * noise(p / size) + depth * smoothstep(0.0, 0.2mm, 0.8mm - length(p - vec3(7mm, 3mm, 2mm))); }
+texture sparse(float depth = 50um, float size = 3mm)
+{
+    float w = 0.5 + 0.5 * noise(p / size);
+    return depth * w * w * w * w * w * w;
+}
 texture long_sum(float depth = 50um)
 {
     float u = p.x / 10mm;
@@ -231,6 +236,11 @@ texture long_sum(float depth = 50um)
         const auto [before, after] = turned("proven", "depth", depth);
         CHECK((after.shoulder_m[0] == 0 && after.shoulder_m[1] == 0));
         CHECK(after.facts.height_max_m >= std::strtod(depth, nullptr) * 1e-6);
+    }
+    // Nor is what a few places hardly show, and much greater than before.
+    for (const char* depth : {"400um", "4mm"}) {
+        const auto [before, after] = turned("sparse", "depth", depth);
+        CHECK((after.shoulder_m[0] == 0 && after.shoulder_m[1] == 0));
     }
     // Nothing can be said at once where nobody has seen a height that is so much greater, where a short proof is far
     // too wide although a longer one is not, and of heights that are all one.
