@@ -1,5 +1,6 @@
 // Texture files that are edited all the time, well and badly, while a servo feels them.
 #include "tests/tools/commands/live_stage.h"
+#include "tests/tools/commands/quiet_machine.h"
 
 #include <fmt/format.h>
 
@@ -194,8 +195,14 @@ TEST_CASE("edits of texture files while a servo runs: no allocation, no step of 
     edit_while_it_is_felt(400);
 }
 
-TEST_CASE("the same of 10 000 edits, which miss no more deadlines than the same work elsewhere", "[.long]")
+TEST_CASE("the same of 10 000 edits, which miss no deadline that a servo does not miss without them", "[.long]")
 {
+    const ProcessorsAwake awake;
+    const FilesInMemory in_memory;
     const std::vector<Deadlines> deadlines = edit_while_it_is_felt(10'000);
-    CHECK(deadlines[0].mean() - deadlines[1].mean() < 3 * std::hypot(deadlines[0].error(), deadlines[1].error()));
+    for (std::size_t other = 1; other < deadlines.size(); ++other) {
+        INFO(other);
+        CHECK(deadlines[0].mean() - deadlines[other].mean() <
+              3 * std::hypot(deadlines[0].error(), deadlines[other].error()));
+    }
 }
