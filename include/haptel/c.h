@@ -99,7 +99,8 @@ HAPTEL_API uint32_t haptel_add_mesh(haptel_builder* builder, const double* posit
 /* A mesh file, scaled until its largest side has that size, at most 1 km; 0: as it is. */
 HAPTEL_API uint32_t haptel_add_file(haptel_builder* builder, const char* file, double size_m,
                                     const haptel_material* material);
-/* 0: there is no object of that number. */
+/* "FILE.haptel:NAME", "wood.oak" or "wood.oak:board" of an installed library, or "precompiled:NAME".
+   0: there is no object of that number. */
 HAPTEL_API int32_t haptel_object_texture(haptel_builder* builder, uint32_t object, const char* reference,
                                          const haptel_value* values, size_t count);
 /* Where its origin is; turned about x, then y, then z. 0: there is no object of that number. */

@@ -53,7 +53,8 @@ class SceneBuilder;
 // One object of a scene, before and after it is built. Cheap to copy; all copies are the same object.
 class HAPTEL_API Object {
 public:
-    // Before the scene is built: "FILE.haptel:NAME", or "precompiled:NAME", and values of its parameters.
+    // Before the scene is built: "FILE.haptel:NAME", "wood.oak" or "wood.oak:board" of an installed library, or
+    // "precompiled:NAME", and values of its parameters.
     Object& texture(std::string reference, Parameters parameters = {});
     Object& place(const Placement& placement); // at the origin, if it is not called
     Object& apart(); // with a seam where it meets others; otherwise objects that meet are felt as one

@@ -28,4 +28,10 @@ inline bool names_library_file(std::string_view text)
     }
 }
 
+// Its texture where no other is named: that which is called like the file, `oak` of "wood.oak".
+inline std::string_view texture_called_like(std::string_view library_file)
+{
+    return library_file.substr(library_file.rfind('.') + 1);
+}
+
 } // namespace haptel

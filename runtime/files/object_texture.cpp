@@ -91,20 +91,22 @@ void load_texture(SceneObject& object, const TextureText& text, const HandLimits
                   const std::filesystem::path& folder, const TextureResolver& textures, FileMessages& messages)
 {
     if (text.reference.empty() || !textures) return;
-    const std::size_t colon = text.reference.rfind(':');
-    if (colon == std::string::npos || colon == 0 || colon + 1 == text.reference.size()) {
-        messages.error(
-            text.at,
-            "expected a file, a colon and the name of a texture in it, such as \"rock.haptel:rock\", found \"" +
-                text.reference + "\"");
+    std::string reference = text.reference;
+    if (names_library_file(reference)) reference.append(":").append(texture_called_like(text.reference));
+    const std::size_t colon = reference.rfind(':');
+    if (colon == std::string::npos || colon == 0 || colon + 1 == reference.size()) {
+        messages.error(text.at,
+                       "expected a file, a colon and the name of a texture in it, such as "
+                       "\"rock.haptel:rock\", or a file of an installed library, such as \"wood.oak\", found \"" +
+                           reference + "\"");
         return;
     }
     TextureRequest request = request_of(object, hands);
-    const std::string file = text.reference.substr(0, colon);
+    const std::string file = reference.substr(0, colon);
     request.reference =
         names_library_file(file) // which the resolver knows where to find
-            ? text.reference
-            : std::filesystem::absolute(folder / file).lexically_normal().string() + text.reference.substr(colon);
+            ? reference
+            : std::filesystem::absolute(folder / file).lexically_normal().string() + reference.substr(colon);
     request.parameters = text.parameters;
     request.folder = std::filesystem::absolute(folder).lexically_normal().string();
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # packed.sh HAPTEL ROOT: packs the library of materials. Fails, and says why, unless docs/materials.md is the page that this
-# makes, shows each texture, and what is packed is installed and used in a home of its own.
+# makes, shows each texture, and what is packed is installed, built and used in a home of its own.
 set -euo pipefail
 haptel=$1 root=$2
 folder=$(mktemp -d)
@@ -34,8 +34,12 @@ cat >scene.toml <<'TEXT'
 [[object]]
 shape = "box"
 size_m = 0.1
-texture = "materials.stone.granite:granite"
+texture = "materials.stone.granite"
 parameters = { depth = "0.2mm" }
 TEXT
 "$haptel" explore scene.toml --seconds 0.2 --clock virtual --json >/dev/null
-echo 'packed, installed and used from there'
+# All of it, for programs without a compiler.
+for emit in header c; do "$haptel" build materials --emit $emit -o materials.${emit:0:1}; done
+cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Werror -c materials.c -o materials.o || fail 'the C text of the library has warnings'
+nm materials.o | grep -q haptel_texture_granite || fail 'the C text of the library has no granite'
+echo 'packed, installed, built and used from there'

@@ -27,4 +27,13 @@ std::vector<std::filesystem::path> texture_files(const std::vector<std::string>&
     return some;
 }
 
+std::vector<std::filesystem::path> all_texture_files()
+{
+    std::vector<std::string> folders = {"stdlib/tests", "examples/textures"};
+    for (const char* family :
+         {"fabric", "food", "leather", "metal", "paper", "perception", "plastic", "skin", "stone", "wood"})
+        folders.push_back("materials/" + std::string(family));
+    return texture_files(folders);
+}
+
 } // namespace haptel::test

@@ -16,4 +16,7 @@ std::vector<std::filesystem::path> haptel_files(const std::vector<std::string>& 
 std::vector<std::filesystem::path> texture_files(const std::vector<std::string>& folders = {"stdlib/tests",
                                                                                             "examples/textures"});
 
+// Those, and the materials'.
+std::vector<std::filesystem::path> all_texture_files();
+
 } // namespace haptel::test

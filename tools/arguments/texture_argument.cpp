@@ -10,8 +10,8 @@ namespace haptel::tools {
 Parsed<TextureArgument> parse_texture_argument(std::string_view text)
 {
     const auto colon = text.rfind(':');
-    if (colon == text.npos && names_library_file(text)) // the texture that is called like its file
-        return {{libraries::path_named(text), std::string(text.substr(text.rfind('.') + 1))}, {}};
+    if (colon == text.npos && names_library_file(text))
+        return {{libraries::path_named(text), std::string(texture_called_like(text))}, {}};
     if (colon == text.npos || colon == 0 || colon + 1 == text.size())
         return {{}, fmt::format("expected FILE:NAME, such as rock.haptel:rock, found '{}'", text)};
     return {{libraries::path_named(text.substr(0, colon)), std::string(text.substr(colon + 1))}, {}};

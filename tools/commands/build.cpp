@@ -6,10 +6,12 @@
 #include "lang/emit_c/source.h"
 #include "lang/emit_glsl/source.h"
 #include "lang/ir/print.h"
+#include "libraries/manifest.h"
 #include "tools/arguments/precisions.h"
 #include "tools/arguments/texture_files.h"
 #include "tools/commands/build_shared.h"
 #include "tools/commands/command.h"
+#include "tools/library/library_place.h"
 #include "tools/output/json.h"
 #include "tools/output/replace_file.h"
 #include "tools/output/terminal.h"
@@ -64,14 +66,35 @@ void add_file(Library& library, const TextureTarget& target)
     }
 }
 
+// Of a library of textures those that it names, not its tests: these are called like what they test.
+std::vector<TextureTarget> targets_of(const std::string& what, std::string& fault)
+{
+    std::error_code ignored;
+    const std::filesystem::path folder =
+        std::filesystem::is_regular_file(what, ignored) ? std::filesystem::path() : library_named(what);
+    if (folder.empty()) return texture_targets({what});
+    const libraries::ManifestFile written = libraries::read_manifest_file(folder / libraries::manifest_name);
+    fault = written.fault;
+    std::vector<TextureTarget> targets;
+    if (written.manifest)
+        for (const libraries::TextureName& texture : written.manifest->textures)
+            targets.push_back({(folder / (texture.file + ".haptel")).string(), texture.texture});
+    return targets;
+}
+
 Library library_of(const std::string& what)
 {
     Library library;
-    for (const TextureTarget& target : texture_targets({what})) add_file(library, target);
+    std::string fault;
+    for (const TextureTarget& target : targets_of(what, fault)) add_file(library, target);
+    if (!fault.empty()) {
+        say_error(fault);
+        library.is_sound = false;
+    }
     if (library.is_sound && library.textures.empty()) {
         say_error(
-            fmt::format("{} holds no texture: expected a texture file, one texture of it as FILE:NAME, or a folder "
-                        "with texture files",
+            fmt::format("{} holds no texture: expected a texture file, one texture of it as FILE:NAME, a folder with "
+                        "texture files, or the name of an installed library",
                         what));
         library.is_sound = false;
     }
@@ -260,9 +283,10 @@ Command build_command(CLI::App& app)
     const auto options = std::make_shared<BuildOptions>();
     CLI::App* command = app.add_subcommand("build", "Compile textures ahead of time, for programs without a compiler");
     command
-        ->add_option("what", options->what, "A texture file, one texture of it, or a folder of such files: one library")
+        ->add_option("what", options->what,
+                     "A texture file, one texture of it, a folder of such files, or a library of textures: one library")
         ->required()
-        ->type_name("FILE[:NAME]|DIR");
+        ->type_name("FILE[:NAME]|DIR|LIBRARY");
     std::string shows = "What to make:";
     std::vector<std::string> names;
     for (const Maker& maker : makers) {
@@ -288,7 +312,7 @@ Command build_command(CLI::App& app)
     command->add_flag("--json", options->json, "One JSON object on standard output: what was made");
     set_examples(*command, "  haptel build rock.haptel --emit static -o librock.a\n"
                            "  haptel build rock.haptel --emit header -o rock.h\n"
-                           "  haptel build textures --emit shared --isa baseline,avx2,avx512 -o libtextures.so\n"
+                           "  haptel build materials --emit shared --isa baseline,avx2,avx512 -o libmaterials.so\n"
                            "  haptel build rock.haptel:rock --emit c --precision f32 -o rock.c");
     return {command, [options] { return build(*options); }};
 }

@@ -4,7 +4,7 @@
 #include "lang/syntax/parser.h"
 #include "libraries/package/archive.h"
 #include "libraries/package/package.h"
-#include "libraries/places.h"
+#include "tools/library/library_place.h"
 #include "tools/output/json.h"
 #include "tools/output/terminal.h"
 
@@ -20,20 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<libraries::Installed> installed_here(const std::string& name)
-{
-    std::error_code fault;
-    return installed_in(libraries::search_path(fs::current_path(fault)), name);
-}
-
-fs::path folder_of(const std::string& what)
-{
-    std::error_code fault;
-    if (fs::exists(fs::path(what) / libraries::manifest_name, fault)) return what;
-    const std::vector<libraries::Installed> installed = installed_here(what);
-    return installed.empty() ? fs::path() : installed.front().folder; // the highest version
-}
-
 // What is read of a library, or messages.
 struct LibraryText {
     std::optional<libraries::Manifest> manifest;
@@ -43,7 +29,7 @@ struct LibraryText {
 
 LibraryText read_library_text(const std::string& what)
 {
-    const fs::path folder = folder_of(what);
+    const fs::path folder = library_named(what);
     if (folder.empty()) {
         libraries::PackageResult archive = libraries::read_archive_file(what);
         if (!archive.package) return {{}, {}, std::move(archive.messages)};
@@ -80,7 +66,7 @@ std::string tagline_of(const libraries::Contents& contents, const libraries::Tex
 
 bool names_library(const std::string& what)
 {
-    return what.ends_with(".haptlib") || !folder_of(what).empty();
+    return what.ends_with(".haptlib") || !library_named(what).empty();
 }
 
 ExitCode show_library(const std::string& what, bool json)
@@ -99,7 +85,9 @@ ExitCode show_library(const std::string& what, bool json)
         lines += fmt::format("  {:<24} {}\n", name, tagline);
     }
     if (json)
-        print_json({{"name", manifest.name},
+        print_json({{"schema", "haptel-library"},
+                    {"schema_version", 1},
+                    {"name", manifest.name},
                     {"version", to_text(manifest.version)},
                     {"tagline", manifest.tagline},
                     {"license", manifest.license},

@@ -1,5 +1,6 @@
 #include "tools/library/library_place.h"
 
+#include "libraries/manifest.h"
 #include "libraries/places.h"
 
 namespace haptel::tools {
@@ -21,6 +22,16 @@ LibraryPlace library_place(const PlaceOptions& options)
     LibraryPlace place{libraries::user_folder(), known.empty() ? here : known, options.project};
     if (place.is_project) place.folder = place.project / libraries::project_folder_name;
     return place;
+}
+
+fs::path library_named(const std::string& what)
+{
+    std::error_code fault;
+    if (fs::exists(fs::path(what) / libraries::manifest_name, fault)) return what;
+    if (!libraries::is_library_name(what)) return {};
+    const std::vector<libraries::Installed> installed =
+        installed_in(libraries::search_path(fs::current_path(fault)), what);
+    return installed.empty() ? fs::path() : installed.front().folder;
 }
 
 } // namespace haptel::tools

@@ -1,9 +1,10 @@
-// Where a command puts libraries, and takes them from: --user or --project.
+// Where a command puts libraries, and takes them from: --user or --project; and which one an argument names.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <string>
 
 namespace haptel::tools {
 
@@ -19,5 +20,8 @@ struct LibraryPlace {
 };
 inline constexpr const char* no_place = "there is no HOME where libraries could be: give --project";
 LibraryPlace library_place(const PlaceOptions& options);
+
+// A folder with a library.toml, or the name of an installed library: its folder, of the highest version. Empty: none.
+std::filesystem::path library_named(const std::string& what);
 
 } // namespace haptel::tools

@@ -38,7 +38,10 @@ constexpr const char* test =
 import {0}.waves as tested;
 
 /// One wavelength further everything is as it was.
-texture waves() {{ return tested.waves() - tested.waves(p = p + vec3(2mm, 0, 0)); }}
+texture waves()
+{{
+    return tested.waves() - tested.waves(p = p + vec3(2mm, 0, 0));
+}}
 )";
 
 constexpr const char* read_me = R"(# {0}

@@ -104,7 +104,7 @@ void check_same_bits(const std::string& file, const std::vector<std::string>& is
 
 TEST_CASE("textures compiled ahead of time have the bits of textures compiled at run time", "[code]")
 {
-    for (const auto& file : texture_files()) check_same_bits(file, {isa_of_engine()});
+    for (const auto& file : all_texture_files()) check_same_bits(file, {isa_of_engine()});
 }
 
 // Of many points the default precision fuses where the processor can: another set than the largest has other bits.

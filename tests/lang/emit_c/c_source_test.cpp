@@ -71,7 +71,7 @@ TEST_CASE("C text has the bits of the interpreter, whatever compiles it, and no 
     size_t compiled = 0;
     for (const Compiler& compiler : c_compilers) {
         if (!is_here(compiler)) continue;
-        for (const auto& file : texture_files()) {
+        for (const auto& file : all_texture_files()) {
             CAPTURE(compiler.name, file);
             const auto program = program_of(file, text_of(file));
             ForeignTextures library;

@@ -14,16 +14,6 @@ using namespace haptel::test;
 
 namespace {
 
-// The library's, the examples' and the materials'.
-std::vector<std::filesystem::path> all_textures()
-{
-    std::vector<std::string> folders = {"stdlib/tests", "examples/textures"};
-    for (const char* family :
-         {"fabric", "food", "leather", "metal", "paper", "perception", "plastic", "skin", "stone", "wood"})
-        folders.push_back("materials/" + std::string(family));
-    return texture_files(folders);
-}
-
 constexpr size_t output_places[] = {7, 8, 9, 10, 11, 12, 15, 16, 17}; // in fragment(), by bit
 
 struct Expected {
@@ -117,7 +107,7 @@ private:
 TEST_CASE("in Mesa a texture's GLSL gives what rounding to f32 can lead to")
 {
     Comparison comparison;
-    for (const auto& file : all_textures()) {
+    for (const auto& file : all_texture_files()) {
         CAPTURE(file);
         comparison.add(*program_of(file, text_of(file)));
     }
@@ -187,7 +177,7 @@ TEST_CASE("glslang takes a texture's GLSL in every version that it is for")
     const Folder folder;
     std::string files;
     size_t count = 0;
-    for (const auto& file : all_textures()) {
+    for (const auto& file : all_texture_files()) {
         const auto program = program_of(file, text_of(file));
         const std::string text = emit_glsl::source(file.stem().string(), textures_of(*program));
         for (const char* version : {"300 es", "320 es", "330", "450"}) {

@@ -116,7 +116,7 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "`a`, found a list\n"},
         {"[[object]]\nshape = \"plane\"\ntexture = \"rock.haptel\"\n",
          "scene.toml:3:11: error: expected a file, a colon and the name of a texture in it, such as "
-         "\"rock.haptel:rock\", found \"rock.haptel\"\n"},
+         "\"rock.haptel:rock\", or a file of an installed library, such as \"wood.oak\", found \"rock.haptel\"\n"},
         {"[[object]]\nmesh = \"bunny.obj\"\n", nullptr},
         {"[[object]]\nmesh = \"empty.obj\"\n", "scene.toml:2:8: error: mesh `empty.obj`: the file is empty\n"},
         {"[[object]]\nmesh = \"points.obj\"\n", "scene.toml:2:8: error: mesh `points.obj`: the file holds no triangle: "

@@ -13,6 +13,8 @@ TEST_CASE("a library that is new is packed in one root, to the same bytes twice,
     const LibraryRoot author, user;
     Ran ran = author.run("new --library wood");
     CHECK(ran.code == 0);
+    CHECK(author.run("fmt --check wood/waves.haptel wood/tests/waves.haptel").code == 0);
+    CHECK(author.json("build wood --emit object -o wood.o")["textures"].size() == 1); // not its test
     CHECK(author.run("new --library wood").code == 1);
     CHECK(author.run("new --library Wood").code == 2);
     const Json packed = author.json("pack wood -o wood.haptlib");
@@ -45,9 +47,14 @@ TEST_CASE("a library that is new is packed in one root, to the same bytes twice,
     CHECK(user.run("test wood.waves --points 500").code == 0);
     CHECK(contains(user.run("info wood.waves").out, "Straight waves"));
     CHECK(user.run("plot wood.waves:waves --size 64 --out waves.png").code == 0);
-    user.write("scene.toml", "[[object]]\nshape = \"box\"\nsize_m = 0.1\ntexture = \"wood.waves:waves\"\n");
-    CHECK(user.json("explore scene.toml --seconds 0.3 --clock virtual")["textures_compiled"] == 1);
+    for (const char* reference : {"wood.waves", "wood.waves:waves"}) {
+        user.write("scene.toml",
+                   "[[object]]\nshape = \"box\"\nsize_m = 0.1\ntexture = \"" + std::string(reference) + "\"\n");
+        CHECK(user.json("explore scene.toml --seconds 0.3 --clock virtual")["textures_compiled"] == 1);
+    }
 
+    const Json built = user.json("build wood --emit header -o wood.h");
+    CHECK(built["textures"][0]["symbol"] == "haptel_texture_waves");
     const Json listed = user.json("list");
     REQUIRE(listed["libraries"].size() == 1);
     CHECK(listed["libraries"][0]["textures"] == Json{"wood.waves:waves"});

@@ -126,6 +126,6 @@ TEST_CASE("from a datagram to the first tick that uses its value, over materials
         WARN(folders.front() << ": " << all.size() << " values: median " << at(0.5).ms << " ms, 90 % within "
                              << at(0.9).ms << ", 99 % within " << at(0.99).ms << ", longest " << all.back().ms << "; "
                              << within << " within two ticks");
-        CHECK(at(0.5).ms < 10); // an idle machine takes about one
+        CHECK(static_cast<double>(within) > 0.95 * static_cast<double>(all.size())); // 99 % on an idle machine
     }
 }
