@@ -293,15 +293,20 @@ TEST_CASE("a microcontroller's compiler takes the text")
         WARN("not tried: gcc-arm-none-eabi and libnewlib-arm-none-eabi are not here");
         return;
     }
-    const auto program = program_of("n.haptel", "texture n() { return 1mm * fbm(p / 1mm, 4); }");
-    for (const bool is_single : {true, false}) {
+    const auto size_of = [&](const std::string& name, const std::string& text, bool is_single) {
+        CAPTURE(name, is_single);
         const Folder folder;
-        folder.write("n.c", emit_c::source("n", textures_of(*program), is_single));
+        folder.write("n.c", emit_c::source("n", textures_of(*program_of(name, text)), is_single));
         REQUIRE(std::system(("cd '" + folder.path.string() + "' && " + compiler + warnings +
                              " -c n.c && arm-none-eabi-size n.o >size && arm-none-eabi-nm -u n.o >called")
                                 .c_str()) == 0);
-        WARN((is_single ? "in float, bytes:\n" : "in double, bytes:\n") << text_of(folder.path / "size"));
         const std::string called = text_of(folder.path / "called");
         for (const char* heap : {"malloc", "free", "memcpy"}) CHECK(called.find(heap) == called.npos);
-    }
+        return text_of(folder.path / "size");
+    };
+    const std::vector<std::filesystem::path> files = all_texture_files();
+    for (size_t i = 0; i < files.size(); i += 10) size_of(files[i], text_of(files[i]), i % 20 == 0);
+    for (const bool is_single : {true, false})
+        WARN((is_single ? "in float, bytes:\n" : "in double, bytes:\n")
+             << size_of("n.haptel", "texture n() { return 1mm * fbm(p / 1mm, 4); }", is_single));
 }
