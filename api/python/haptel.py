@@ -6,11 +6,13 @@
 
 Points are triples in metres: a list of them, or any array of doubles of shape (n, 3), which then also come back
 (numpy's, if it is there). What is refused raises haptel.Error with the message that the command line gives.
+read_trace() reads what `haptel explore --out` has written.
 """
 
 import array
 import ctypes
 import os
+import re
 import time
 
 _double, _size, _text = ctypes.c_double, ctypes.c_size_t, ctypes.c_char_p
@@ -279,3 +281,62 @@ class Renderer(_Owner):
         force = _tick(self._handle, _three(tip_m), _three(tail_m), periods)
         _between_ticks(self._handle)
         return force
+
+
+# Of the columns in runtime/servo/tick_columns.h: those that every trace has, and those that count or number something.
+_trace_columns = ("tick time_s x_m y_m z_m tail_x_m tail_y_m tail_z_m fx_n fy_n fz_n contact depth_m height_m compute_ns "
+                  "binding").split()
+_whole_columns = frozenset("tick contact compute_ns binding interrupted waiting degraded object faults woken_ns "
+                           "wake_late_ns".split())
+
+
+def read_trace(file):
+    """The columns of a trace.csv by their names, a number for each tick: read_trace("run/trace.csv")["fz_n"].
+
+    Arrays of numpy's, if it is there, and else lists. Ticks, nanoseconds and whatever else is counted are whole numbers.
+    """
+    path = os.fsdecode(file)
+    if not os.path.isfile(path):
+        raise Error(f"{path}: the trace " + ("is a folder" if os.path.isdir(path) else
+                                             "is not a regular file" if os.path.exists(path) else "does not exist"))
+    try:
+        with open(path, encoding="utf-8", errors="replace") as lines:
+            return _columns_of(lines, path)
+    except OSError as error:
+        raise Error(f"{path}: the trace cannot be read: {error.strerror}") from error
+
+
+def _columns_of(lines, path):
+    first = lines.readline().rstrip("\n")
+    if first.startswith("HAPTRACE"):
+        raise Error(f"{path} is a recording: `haptel replay FILE --csv trace.csv` makes a trace of it")
+    if not first:
+        raise Error(f"{path}:1: expected a trace (a CSV file as `haptel explore --out` writes it), but there is no header")
+    names = first.split(",")
+    for name in _trace_columns:
+        if name not in names:
+            raise Error(f"{path}:1: the trace has no column `{name}`")
+    columns = [array.array("q" if name in _whole_columns else "d") for name in names]
+    kinds = [int if name in _whole_columns else float for name in names]
+    numbers = re.compile("[-+.,0-9Ee]*") # Python itself takes `nan`, ` 1` and `1_0`, too
+    for at, line in enumerate(lines, 2):
+        line = line.rstrip("\n")
+        if not line:
+            continue
+        cells = line.split(",")
+        if len(cells) != len(names):
+            raise Error(f"{path}:{at}: expected {len(names)} values, found {len(cells)}")
+        is_plain = numbers.fullmatch(line)
+        for name, column, kind, cell in zip(names, columns, kinds, cells):
+            try:
+                if not is_plain and not numbers.fullmatch(cell):
+                    raise ValueError
+                column.append(kind(cell))
+            except (ValueError, OverflowError):
+                what = "a whole number" if kind is int else "a number"
+                raise Error(f"{path}:{at}: expected {what} in column `{name}`, found `{cell}`") from None
+    try:
+        import numpy
+    except ImportError:
+        return dict(zip(names, map(list, columns)))
+    return dict(zip(names, map(numpy.array, columns)))

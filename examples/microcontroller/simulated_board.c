@@ -1,7 +1,7 @@
 /* A wheel of numbers in place of a board: a hand turns it for half a second and lets go. It must come to rest in a
  * valley between two ridges, or the program fails. */
-#include "examples/microcontroller/board.h"
-#include "examples/microcontroller/wheel.h"
+#include <board.h>
+#include <wheel.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -3,9 +3,9 @@
  *
  * A finger that rests on ridges with `press_n` is pushed back by press_n times their slope.
  */
-#include "examples/microcontroller/wheel.h"
+#include <wheel.h>
 
-#include "examples/microcontroller/board.h"
+#include <board.h>
 #include <detents.h>
 
 static const float radius_m = 0.03F, press_n = 2.0F, torque_limit_n_m = 0.03F;

@@ -1,6 +1,6 @@
 /* A texture that was compiled when this program was built: C, the C library, and nothing of Haptel at run time.
  *
- * CMakeLists.txt beside the other examples builds it with haptel_add_textures().
+ * CMakeLists.txt beside it builds it with haptel_add_textures().
  */
 #include <rock.h>
 

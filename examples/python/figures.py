@@ -150,10 +150,10 @@ figure("stroke", ["time_s", "force_n", "depth_m", "contacts"], rows)
 
 # %% A trace of `haptel explore --out`: when the hand touched, how hard, and how long a tick took
 if options.trace:
-    trace = read_table(options.trace)
-    forces = [(float(row["time_s"]), math.hypot(*(float(row[axis]) for axis in ("fx_n", "fy_n", "fz_n")))) for row in trace]
-    figure("force_of_trace", ["time_s", "force_n"], forces)
-    touched = sum(row["contact"] != "0" for row in trace)
-    nanoseconds = sorted(float(row["compute_ns"]) for row in trace)
-    print(f"{options.trace}: {len(trace)} ticks, {touched} in contact, at most {max(f for _, f in forces):.3g} N, "
-          f"median of a tick {nanoseconds[len(nanoseconds) // 2]:.0f} ns")
+    trace = haptel.read_trace(options.trace)
+    forces = [math.hypot(*force_n) for force_n in zip(trace["fx_n"], trace["fy_n"], trace["fz_n"])]
+    figure("force_of_trace", ["time_s", "force_n"], list(zip(trace["time_s"], forces)))
+    touched = sum(objects > 0 for objects in trace["contact"])
+    nanoseconds = sorted(trace["compute_ns"])
+    print(f"{options.trace}: {len(forces)} ticks, {touched} in contact, at most {max(forces):.3g} N, "
+          f"median of a tick {nanoseconds[len(nanoseconds) // 2]} ns")

@@ -1,12 +1,15 @@
 """figures_test.py FIGURES HAPTEL SOURCE FOLDER: runs examples/python/figures.py in FOLDER on what `haptel` measures and
-records, and compares its tables with closed forms."""
+records, and compares its tables with closed forms, and a trace as the module reads it with its text."""
 
 import csv
 import math
+import numbers
 import pathlib
 import re
 import subprocess
 import sys
+
+import haptel as module
 
 figures, haptel, source, folder = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3]), pathlib.Path(sys.argv[4])
 subprocess.run([haptel, "explore", source / "examples/scenes/bricks.toml", "--seconds", "1.5", "--clock", "virtual",
@@ -56,3 +59,13 @@ expect(float(flat["depth_um"]) == 0 and all(float(r["force_max_n"]) > float(flat
 stroke = read("stroke")
 expect(float(stroke[0]["force_n"]) == 0 and float(stroke[-1]["force_n"]) > 0.5, "the stroke does not press")
 expect(len(read("force_of_trace")) == 1500 and any(float(r["force_n"]) > 0 for r in read("force_of_trace")), "no force in the trace")
+
+trace = module.read_trace(folder / "trace.csv")
+with open(folder / "trace.csv", newline="") as file:
+    names, *rows = csv.reader(file)
+expect(list(trace) == names and len(rows) == 1500, "the trace has other columns")
+for name, texts in zip(names, zip(*rows)):
+    expect([float(text) for text in texts] == list(trace[name]), f"{name} is read as other numbers")
+# runtime/servo/tick_columns.cpp: what is a double there has a unit, but for nanoseconds.
+whole = {name for name in names if isinstance(list(trace[name])[0], numbers.Integral)}
+expect(whole == {name for name in names if not re.search("_(m|n|s)$", name)}, f"whole numbers are {whole}")

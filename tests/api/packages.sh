@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # packages.sh PACKAGES SOURCE [SUITE]: installs the Debian packages of a folder in a bare Debian that has a compiler of
-# C++, CMake, pkg-config and Python, and uses them there as somebody would who has nothing else of Haptel. A library of
-# textures is packed there, installed and compiled in a second bare Debian, and its code runs in a third, which has
-# nothing of Haptel at all. The packages are for the release on which they were made, SUITE (bookworm, trixie), or else
-# that of this machine. Needs mmdebstrap, the network, and no root where the system lets users have namespaces. Nothing
-# stays behind.
+# C++, CMake, pkg-config and Python, and uses them there as somebody would who has nothing else of Haptel: every example
+# is built and run. A library of textures is packed there, installed and compiled in a second bare Debian. Its code runs
+# in a third, which has nothing of Haptel at all, and so do the examples that need none of Haptel's libraries. The packages
+# are for the release on which they were made, SUITE (bookworm, trixie), or else that of this machine. Needs mmdebstrap,
+# the network, and no root where the system lets users have namespaces. Nothing stays behind.
 set -euo pipefail
 
 say() { printf '==> %s\n' "$*"; }
@@ -17,9 +17,8 @@ if [[ ${1:-} != inside ]]; then
     trap 'rm -rf "$made"' EXIT
     chmod 755 "$made"
     mkdir "$made/haptel"
-    cp "$packages"/*.deb "$source/tests/api/packages.sh" "$source/tests/api/python_test.py" \
-        "$source/examples/textures/stone.haptel" "$made/haptel"
-    cp -r "$source/examples/library" "$made/haptel"
+    cp "$packages"/*.deb "$source/tests/api/packages.sh" "$source/tests/api/python_test.py" "$made/haptel"
+    cp -r "$source/examples" "$source/tests/api/chai3d_stand_in" "$made/haptel"
     bare() { # STAGE INCLUDED OUT...: files of /haptel that come back
         local stage=$1 included=$2 out=() name
         shift 2
@@ -29,7 +28,7 @@ if [[ ${1:-} != inside ]]; then
             --customize-hook="copy-in $made/haptel /" --customize-hook="chroot \"\$1\" /haptel/packages.sh inside $stage" \
             "${out[@]}" "$suite" /dev/null
     }
-    bare first g++,cmake,make,pkg-config,python3 wood.haptlib
+    bare first g++,cmake,make,pkg-config,python3 wood.haptlib alone
     bare second gcc,libc6-dev use_wood libwood.so
     rm "$made"/haptel/*.deb
     bare third libc6
@@ -38,16 +37,16 @@ fi
 
 # From here on in the bare system, as its root.
 cd /haptel
-export DEBIAN_FRONTEND=noninteractive HOME=/root CXXFLAGS=-Wall LC_ALL=C.UTF-8
+export DEBIAN_FRONTEND=noninteractive HOME=/root CFLAGS=-Wall CXXFLAGS=-Wall LC_ALL=C.UTF-8
 get() { # NAME...: as `apt install` does, with what they need of the system
     local files=() name
     for name in "$@"; do files+=(/haptel/"$name"_*.deb); done
     say "apt-get install $*"
     apt-get -qq -o Dpkg::Use-Pty=0 install --yes --no-install-recommends "${files[@]}" >log 2>&1 || { cat log; exit 1; }
 }
-configure() {
-    say "cmake -S library -B $1"
-    cmake -S library -B "$1" >log 2>&1 && cmake --build "$1" >>log 2>&1 || { cat log; exit 1; }
+configure() { # EXAMPLE FOLDER OPTION...
+    say "cmake -S examples/$1 -B $2"
+    cmake -S "examples/$1" -B "$2" "${@:3}" >log 2>&1 && cmake --build "$2" >>log 2>&1 || { cat log; exit 1; }
 }
 lists() { # NAME: whether a package of that name is installed
     dpkg-query -W -f '${Package} ${db:Status-Abbrev}\n' | grep -E "^$1.* i" # nothing else prints
@@ -94,9 +93,11 @@ TEXT
 # A third one, on which nothing of Haptel ever was.
 third() {
     ! compgen -G '/usr/lib/*/lib*haptel*' && ! compgen -G '/usr/lib/*/libLLVM*' || fail "the system is not bare"
-    ldd use_wood libwood.so
-    ! ldd use_wood libwood.so | grep -E 'haptel|LLVM|stdc|not found' || fail "the code needs more than libm"
+    ldd use_wood libwood.so alone/*
+    ! ldd use_wood libwood.so alone/* | grep -E 'haptel|LLVM|stdc|not found' || fail "the code needs more than libm"
     ./use_wood
+    ./alone/precompiled
+    ./alone/microcontroller
     say "packed, installed, compiled and used"
 }
 
@@ -107,11 +108,17 @@ lists 'libllvm|libglm|libtomlplusplus' && fail "the system is not bare"
 
 # Without the compiler: headers, library, and the command that compiles textures when the program is built.
 get "libhaptel$so" libhaptel-dev
-if cmake -S library -B alone >log 2>&1; then fail "textures would be compiled without the command"; fi
+if cmake -S examples/library -B without_command >log 2>&1; then fail "textures would be compiled without the command"; fi
 grep -q HAPTEL_COMMAND log || { cat log; fail "it is not said that the command is missing"; }
 get haptel
-configure without_compiler
+configure library without_compiler
 [[ ! -e without_compiler/ball ]] || fail "there is a compiler"
+configure chai3d chai3d -DCHAI3D_DIR=/haptel/chai3d_stand_in
+mkdir alone
+for program in precompiled microcontroller; do
+    configure "$program" "$program"
+    cp "$program/$program" alone
+done
 lists 'lib(glm|llvm-?[0-9]*|tomlplusplus|fmt|assimp|usb-[0-9.]*)-dev' && fail "headers of other libraries came along"
 apt-get -qq purge --yes haptel libhaptel-dev >log 2>&1 && apt-get -qq autoremove --purge --yes >log 2>&1 || { cat log; exit 1; }
 lists libllvm && fail "the runtime needs LLVM"
@@ -119,25 +126,45 @@ lists libllvm && fail "the runtime needs LLVM"
 say "own_loop, with libhaptel$so alone: $(dpkg-query -W -f '${Depends}' "libhaptel$so")"
 ./without_compiler/own_loop
 ldd without_compiler/own_loop | grep -E 'haptel|LLVM|not found'
-! ldd without_compiler/own_loop | grep -E 'LLVM|not found' || fail "it needs LLVM"
+! ldd without_compiler/own_loop chai3d/feel | grep -E 'LLVM|not found' || fail "it needs LLVM"
+say "feel, over a stand-in for CHAI3D"
+felt=$(./chai3d/feel 0.3) # at 500 N/m, 2 mm into the ball where a wave is highest
+[[ $felt == "at most 1.00 N" ]] || fail "the example for CHAI3D: $felt"
 
 # With it, by CMake and by pkg-config.
 get "libhaptel-compiler$so" libhaptel-dev libhaptel-compiler-dev haptel haptel-materials haptel-udev python3-haptel
 for package in $(dpkg-query -W -f '${Package}\n' '*haptel*'); do
     [[ -e /usr/share/doc/$package/copyright ]] || fail "$package has no licence"
 done
-configure with_compiler
-for program in "own_loop" "plain stone.haptel:stone" "ball stone.haptel:stone"; do
+configure library with_compiler
+stone=examples/textures/stone.haptel:stone
+for program in "own_loop" "plain $stone" "ball $stone"; do
     say "$program"
     ./with_compiler/$program
 done
 say "pkg-config haptel-compiler $(pkg-config --modversion haptel-compiler): $(pkg-config --cflags --libs haptel-compiler)"
 # shellcheck disable=SC2046
-g++ -std=c++20 library/ball.cpp -o by_pkg_config $(pkg-config --cflags --libs haptel-compiler)
-./by_pkg_config stone.haptel:stone >/dev/null || fail "the program by pkg-config failed"
+g++ -std=c++20 examples/library/ball.cpp -o by_pkg_config $(pkg-config --cflags --libs haptel-compiler)
+./by_pkg_config "$stone" >/dev/null || fail "the program by pkg-config failed"
 
 say "python3 -c 'import haptel'"
 python3 python_test.py
+say "examples/python/figures.py"
+haptel explore examples/scenes/bricks.toml --seconds 2 --clock virtual --out felt >log 2>&1 || { cat log; exit 1; }
+python3 examples/python/figures.py --small --out figures --trace felt/trace.csv
+(($(wc -l <figures/force_of_trace.csv) == 2001)) || fail "the trace has other ticks"
+say "the same with python3-numpy"
+apt-get -qq -o Dpkg::Use-Pty=0 install --yes --no-install-recommends python3-numpy >log 2>&1 || { cat log; exit 1; }
+python3 -c 'import numpy'
+mv figures/force_of_trace.csv .
+python3 python_test.py
+python3 examples/python/figures.py --small --out figures --trace felt/trace.csv >log || { cat log; exit 1; }
+cmp force_of_trace.csv figures/force_of_trace.csv || fail "arrays have other numbers than lists"
+say "examples/textures, examples/scenes"
+haptel test examples/textures >log 2>&1 || { cat log; exit 1; }
+for scene in examples/scenes/*.toml; do
+    haptel explore "$scene" --seconds 0.5 --clock virtual >log 2>&1 || { cat log; fail "$scene is not felt"; }
+done
 say "haptel, and a material by its name"
 haptel --version
 haptel list | cut -c-100

@@ -1,7 +1,10 @@
 """The Python module against closed forms: a sine's heights and slopes, a table's spring, what is refused and how."""
 
 import math
+import os
+import pathlib
 import sys
+import tempfile
 import unittest
 
 import haptel
@@ -76,6 +79,63 @@ class Scenes(unittest.TestCase):
             self.table().run("falcon", virtual_time=True)
         with self.assertRaisesRegex(haptel.Error, "`seconds` must be at least 0"):
             self.table().run(seconds=-1)
+
+
+class Traces(unittest.TestCase):
+    names = ("tick,time_s,x_m,y_m,z_m,tail_x_m,tail_y_m,tail_z_m,fx_n,fy_n,fz_n,contact,depth_m,height_m,compute_ns,"
+             "binding")
+    row = "7,0.007,1e-3,-2E-05,0.25,0,0,0,0,0,-1.5,1,0.001,0,123456789012345678,1"
+
+    def read(self, *lines):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "trace.csv")
+            file.write_bytes("\n".join(lines).encode())
+            return haptel.read_trace(file)
+
+    def test_numbers_stand_under_their_names_to_the_bit(self):
+        trace = self.read(self.names + ",other", self.row + ",0.5\r", "", self.row + ",0.1\n")
+        self.assertEqual(list(trace), self.names.split(",") + ["other"])
+        for name, value in (("tick", 7), ("time_s", 0.007), ("x_m", 1e-3), ("y_m", -2e-5), ("fz_n", -1.5),
+                            ("compute_ns", 123456789012345678)):
+            self.assertEqual(list(trace[name]), [value, value])
+        self.assertEqual(list(trace["other"]), [0.5, 0.1])
+        self.assertEqual([len(column) for column in self.read(self.names).values()], 16 * [0])
+
+    def test_columns_are_arrays_where_numpy_is(self):
+        try:
+            import numpy
+        except ImportError:
+            self.assertIs(type(self.read(self.names, self.row)["fz_n"]), list)
+            return
+        trace = self.read(self.names, self.row)
+        self.assertIs(type(trace["fz_n"]), numpy.ndarray)
+        self.assertEqual((trace["fz_n"].dtype, trace["tick"].dtype), (numpy.float64, numpy.int64))
+
+    def test_what_is_no_trace_is_refused_with_its_place(self):
+        cut = self.row.rsplit(",", 6)[0]
+        for lines, said in (([""], "csv:1: expected a trace .*, but there is no header$"),
+                            (["time,force", "0,1"], "csv:1: the trace has no column `tick`$"),
+                            ([self.names, self.row, cut], "csv:3: expected 16 values, found 10$"),
+                            ([self.names, self.row + ",1"], "csv:2: expected 16 values, found 17$"),
+                            ([self.names, self.row.replace("0.25", "high")],
+                             "csv:2: expected a number in column `z_m`, found `high`$"),
+                            ([self.names, "", self.row.replace("0.25", "")],
+                             "csv:3: expected a number in column `z_m`, found ``$"),
+                            ([self.names, self.row.replace("0.25", "nan")], "column `z_m`, found `nan`$"),
+                            ([self.names, self.row.replace("7,", "7.5,", 1)],
+                             "expected a whole number in column `tick`, found `7.5`$"),
+                            ([self.names, self.row.replace("7,", "1_0,", 1)], "column `tick`, found `1_0`$"),
+                            ([self.names, "9" + 19 * "0" + self.row[1:]], "column `tick`, found `90+`$"),
+                            (["HAPTRACE\4\3\2\1"], "is a recording: `haptel replay FILE --csv trace.csv`"),
+                            (["\0\xff\n\0"], "csv:1: the trace has no column `tick`$")):
+            with self.assertRaisesRegex(haptel.Error, said):
+                self.read(*lines)
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkfifo(folder + "/pipe")
+            for file, said in ((folder, "the trace is a folder"), (folder + "/none.csv", "the trace does not exist"),
+                               (folder + "/pipe", "the trace is not a regular file")):
+                with self.assertRaisesRegex(haptel.Error, "^" + file + ": " + said + "$"):
+                    haptel.read_trace(file)
 
 
 if __name__ == "__main__":
