@@ -138,7 +138,7 @@ for package in $(dpkg-query -W -f '${Package}\n' '*haptel*'); do
 done
 configure library with_compiler
 stone=examples/textures/stone.haptel:stone
-for program in "own_loop" "plain $stone" "ball $stone"; do
+for program in "own_loop" "plain $stone" "ball $stone" "ball materials.stone.granite"; do
     say "$program"
     ./with_compiler/$program
 done
