@@ -308,3 +308,15 @@ TEST_CASE("dimension: work is bounded where calls, loops and dimensions multiply
     CHECK(messages == "1:22 cannot add a plain number to a length\n");
     CHECK(seconds_to_compile(calls, messages) < 20);
 }
+
+TEST_CASE("a texture that only a function calls which nobody calls is not looked into")
+{
+    for (const char* text :
+         {"float along(float x) { return t(p = vec3(x)); }\ntexture t() { return 1mm * sin(p.x / 1mm); }",
+          "float g(float x) { return along(x); }\nfloat along(float x) { return t(w = x); }\n"
+          "texture t(float w = 1mm) { return w * sin(p.x / w); }"}) {
+        const CompileResult result = compile({"main.haptel", text}, {});
+        INFO(said(result));
+        CHECK(result.program);
+    }
+}
