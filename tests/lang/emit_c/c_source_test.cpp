@@ -1,9 +1,11 @@
-// Textures as C text: compiled by the compilers of this machine, without a warning, they are what the interpreter says.
+// Textures as C text: compiled by the compilers of this machine, without a warning, they are what the interpreter says,
+// in float what rounding can make of it.
 #include "lang/emit_c/header.h"
 #include "lang/emit_c/source.h"
-#include "tests/lang/emit/emitted.h"
-#include "tests/support/foreign_textures.h"
+#include "tests/lang/emit/float_truth.h"
 #include "tests/support/haptel_files.h"
+
+#include <array>
 
 using namespace haptel;
 using namespace haptel::test;
@@ -49,6 +51,27 @@ size_t different_samples(const lang::Program& program, const ForeignTextures& li
 std::string library_command(const Compiler& compiler, const std::string& more = "")
 {
     return compiler.command + std::string(warnings) + more + " -shared -fPIC '%d/textures.c' -o '%o' -Wl,-z,defs -lm";
+}
+
+// As expected() numbers them.
+std::array<double, 18> numbers_of(const haptel_texture& texture, const haptel_point& point,
+                                  const std::vector<double>& block)
+{
+    haptel_sample sample = blank_sample, alone = blank_sample;
+    texture.height_gradient(&point, block.data(), &sample);
+    texture.height(&point, block.data(), &alone);
+    std::array<double, 18> all = {sample.height_m,
+                                  sample.gradient[0],
+                                  sample.gradient[1],
+                                  sample.gradient[2],
+                                  static_cast<double>(sample.faults),
+                                  alone.height_m,
+                                  static_cast<double>(alone.faults)};
+    for_each_output(texture.writes, [&](const OutputInfo& output, size_t) {
+        for (size_t i = 0; i < output.components; ++i)
+            all[output_places[&output - output_table] + i] = components_of(sample, output)[i];
+    });
+    return all;
 }
 
 // Of every kind of parameter, and of names that C has taken.
@@ -247,6 +270,41 @@ TEST_CASE("a texture's parameters are described in C as they are in Haptel")
     }
     CHECK(std::string(made.choices[made.parameter_count - 1][2]) == "torn");
     CHECK(made.choices[0] == nullptr);
+}
+
+TEST_CASE("in float C text gives what rounding each operation to f32 can lead to")
+{
+    size_t samples = 0, undecided = 0, numbers = 0, wrong = 0;
+    const std::vector<std::filesystem::path> files = all_texture_files();
+    for (size_t i = 0; i < files.size(); ++i) {
+        const Compiler& compiler = c_compilers[is_here(c_compilers[i % 2]) ? i % 2 : 0];
+        CAPTURE(files[i], compiler.name);
+        const auto program = program_of(files[i], text_of(files[i]));
+        ForeignTextures library;
+        library.write("textures.c", emit_c::source("textures", textures_of(*program), true));
+        library.open(library_command(compiler, "-Wdouble-promotion"));
+        ir::Interpreter<Ball> interpreter(program->module);
+        FloatStimuli stimuli(7);
+        for (const ir::Texture& texture : program->module.textures)
+            for (int round = 0; round < 8; ++round) {
+                const std::vector<double> block = stimuli.block(texture, round % 2 == 0);
+                const haptel_point point = stimuli.point();
+                const std::vector<Expected> all = expected(interpreter, texture, point, block);
+                ++samples;
+                undecided += all.empty();
+                const std::array<double, 18> made = numbers_of(*library.texture(texture.name), point, block);
+                for (const Expected& number : all) {
+                    ++numbers;
+                    if (number.ball.may_be(made[number.place])) continue;
+                    CAPTURE(texture.name, number.what, made[number.place]);
+                    CHECK(static_cast<double>(number.ball) == made[number.place]);
+                    ++wrong;
+                }
+            }
+    }
+    WARN("of " << samples << " samples rounding decides " << undecided << "; " << numbers << " numbers compared");
+    CHECK(wrong == 0);
+    CHECK(undecided < samples / 4);
 }
 
 // Noise in float near the origin is off by some 1e-6 of its range: docs/performance.md.

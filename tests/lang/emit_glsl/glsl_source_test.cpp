@@ -5,7 +5,6 @@
 #include "lang/emit_glsl/source.h"
 #include "tests/fuzz/random_source.h"
 #include "tests/lang/emit_glsl/square.h"
-#include "tests/support/ball.h"
 #include "tests/support/haptel_files.h"
 #include "tests/support/tries.h"
 
@@ -13,35 +12,6 @@ using namespace haptel;
 using namespace haptel::test;
 
 namespace {
-
-constexpr size_t output_places[] = {7, 8, 9, 10, 11, 12, 15, 16, 17}; // in fragment(), by bit
-
-struct Expected {
-    std::string what;
-    size_t place;
-    Ball ball;
-};
-
-// Nothing where rounding decides.
-std::vector<Expected> expected(ir::Interpreter<Ball>& interpreter, const ir::Texture& texture,
-                               const haptel_point& point, const std::vector<double>& block)
-{
-    Ball::in_singles = true;
-    Ball::undecided = false;
-    const ir::EntryInputs<Ball> inputs = inputs_of<Ball>(texture, point, block);
-    const auto balls = interpreter.run(texture.height_gradient, {}, &inputs);
-    Ball::in_singles = false;
-    if (Ball::undecided) return {};
-    std::vector<Expected> all = {
-        {"height", 0, balls[0].real}, {"faults", 4, Ball(balls[4].bits)}, {"the height alone", 5, balls[0].real}};
-    for (size_t i = 0; i < 3; ++i) all.push_back({"gradient", 1 + i, balls[1 + i].real});
-    for_each_output(texture.writes, [&](const OutputInfo& output, size_t first) {
-        const size_t place = output_places[&output - output_table];
-        for (size_t i = 0; i < output.components; ++i)
-            all.push_back({std::string(output.name), place + i, balls[5 + first + i].real});
-    });
-    return all;
-}
 
 std::vector<const ir::Texture*> pointers_to(const std::vector<ir::Texture>& textures)
 {

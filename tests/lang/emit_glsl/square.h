@@ -2,16 +2,13 @@
 #pragma once
 
 #include "lang/emit_glsl/names.h"
-#include "tests/lang/emit/emitted.h"
+#include "tests/lang/emit/float_truth.h"
 #include "tests/lang/emit_glsl/shader.h"
-#include "tests/support/foreign_textures.h"
 
 namespace haptel::test {
 
 inline constexpr int targets = 5;
 inline constexpr const char* versions[] = {"300 es", "320 es"}; // without `precise`, and with it
-inline constexpr size_t numbers_of_point = sizeof(haptel_point) / sizeof(double);
-static_assert(numbers_of_point == 36);
 
 // What a texture makes of a texel's point: height and gradient, faults, the height alone and its faults, outputs.
 inline std::string fragment(const std::string& text, const std::string& name, int side)
@@ -55,59 +52,6 @@ void main()
 }
 )";
 }
-
-// Points and blocks of numbers that floats hold.
-class FloatStimuli {
-public:
-    explicit FloatStimuli(uint32_t seed) : random(seed), noise(seed) {}
-
-    float between(double least, double most)
-    {
-        return static_cast<float>(std::uniform_real_distribution(least, most)(random));
-    }
-    haptel_point point()
-    {
-        haptel_point made{};
-        double numbers[numbers_of_point];
-        for (double& number : numbers) number = between(-1, 1);
-        for (size_t i = 0; i < 3; ++i) numbers[i] = between(-0.02, 0.02);
-        for (size_t i = 6; i < 9; ++i) numbers[i] = between(0, 1);
-        for (size_t i = 24; i < 27; ++i) numbers[i] = between(-0.2, 0.2);
-        numbers[27] = between(0, 2);
-        numbers[28] = between(0, 0.005);
-        numbers[35] = between(1, 50);
-        std::memcpy(&made, numbers, sizeof made);
-        return made;
-    }
-    // The defaults, or any values within their ranges.
-    std::vector<double> block(const ir::Texture& texture, bool is_default)
-    {
-        std::vector<double> made(texture.block_size / sizeof(double));
-        for (size_t i = 0; i < 6; ++i) made[i] = between(0, 0.1);
-        made[6] = is_default ? 0 : between(0, 0.001);
-        for (const ir::Parameter& parameter : texture.parameters) {
-            char* const place = reinterpret_cast<char*>(made.data()) + parameter.offset;
-            const bool varies = !is_default && std::isfinite(parameter.minimum);
-            double value = varies ? between(parameter.minimum, parameter.maximum) : parameter.value;
-            if (parameter.type == ir::Type::real) {
-                value = static_cast<float>(value);
-                std::memcpy(place, &value, sizeof value);
-            } else if (parameter.type == ir::Type::image) {
-                const haptel_image* const image = noise.picture();
-                std::memcpy(place, &image, sizeof image);
-            } else {
-                const auto word = static_cast<uint32_t>(static_cast<int64_t>(std::round(value)));
-                std::memcpy(place, &word, sizeof word);
-            }
-        }
-        return made;
-    }
-    const haptel_image& picture() const { return *noise.picture(); }
-
-private:
-    std::mt19937 random;
-    NoisePicture noise;
-};
 
 inline void set_block(const Shader& shader, const ir::Texture& texture, const std::vector<double>& block, int32_t image)
 {
