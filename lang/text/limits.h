@@ -26,6 +26,6 @@ constexpr size_t variables_max = 1'000;
 constexpr size_t bound_max = 1'000;
 // IR instructions of a texture's body with all it calls, and of its entries once derivatives are made: machine code of
 // one program takes about a tenth of a millisecond for each.
-constexpr size_t instructions_max = 20'000, entry_instructions_max = 100'000;
+constexpr size_t instructions_max = 10'000, entry_instructions_max = 50'000;
 
 } // namespace haptel::lang

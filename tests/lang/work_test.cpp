@@ -247,7 +247,8 @@ TEST_CASE("limits: what is too much is refused at its place, and what is at the 
     const auto factors = [](size_t count) {
         return "texture t(float a = 1.0) { return 1mm" + repeated(count, " * a") + "; }";
     };
-    CHECK(refusal(factors(10'000)) == "");
+    CHECK(refusal(factors(9'990)) == "");
+    CHECK(refusal(factors(10'010)) == "1:9 too-large\n");
     CHECK(refusal(factors(100'000)) == "1:9 too-large\n");
 
     std::string tables;

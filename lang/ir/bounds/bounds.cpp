@@ -16,7 +16,7 @@ constexpr uint64_t operations_per_evaluation = 1'000'000;
 constexpr uint64_t operations_of_derivatives = 5'000'000; // more than operations_of_check: calls count, too
 // Instructions, of the longest programs that are looked at as closely: of longer ones every step costs more, so that
 // fewer are taken.
-constexpr uint64_t usual_extent = 5'000;
+constexpr uint64_t usual_extent = 2'500;
 // A height in metres, a slope or a curvature per metre beyond this says as little as none: no piece that holds a pole
 // is small enough yet, and cutting goes on although nothing improves.
 constexpr double useless = 1e9;

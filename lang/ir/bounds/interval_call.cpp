@@ -10,8 +10,9 @@ namespace haptel::ir {
 namespace {
 
 constexpr uint64_t short_body = 16; // instructions
-// What a call costs besides its arguments, its results and what is done inside, in operations, where it varies.
-constexpr uint64_t operations_of_call = 2;
+// What a call counts besides its arguments, its results and what is done inside, in operations, where it varies: so
+// many that a hostile program of hardly more than calls is evaluated three times, not five.
+constexpr uint64_t operations_of_call = 6;
 
 Interval declared_value(const Facts& facts, bool may_be_nan)
 {
