@@ -64,9 +64,16 @@ Interval add(const Interval& a, const Interval& b)
 Interval multiply(const Interval& a, const Interval& b)
 {
     if ((a.is_zero() && !may_be_infinite(b)) || (b.is_zero() && !may_be_infinite(a))) return {0, 0};
-    Interval all = at_ends(a, b, product);
-    all.may_be_nan = (may_be_infinite(a) && b.contains(0)) || (may_be_infinite(b) && a.contains(0));
-    return all;
+    const auto least = [&](double x) { return product(x, x < 0 ? b.maximum : b.minimum).minimum; };
+    const auto greatest = [&](double x) { return product(x, x < 0 ? b.minimum : b.maximum).maximum; };
+    const bool rises = b.minimum >= 0, falls = b.maximum <= 0; // with a
+    const double low = rises   ? least(a.minimum)
+                       : falls ? least(a.maximum)
+                               : std::min(least(a.minimum), least(a.maximum));
+    const double high = rises   ? greatest(a.maximum)
+                        : falls ? greatest(a.minimum)
+                                : std::max(greatest(a.minimum), greatest(a.maximum));
+    return {low, high, (may_be_infinite(a) && b.contains(0)) || (may_be_infinite(b) && a.contains(0))};
 }
 
 namespace {

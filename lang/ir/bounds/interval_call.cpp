@@ -10,9 +10,10 @@ namespace haptel::ir {
 namespace {
 
 constexpr uint64_t short_body = 16; // instructions
-// What a call counts besides its arguments, its results and what is done inside, in operations, where it varies: so
-// many that a hostile program of hardly more than calls is evaluated three times, not five.
-constexpr uint64_t operations_of_call = 6;
+// What a call counts besides its arguments, its results and what is done inside, in operations. With an argument and a
+// result it takes as long as three; where it varies it counts as so many that a hostile program of hardly more than
+// calls is evaluated three times, not five.
+constexpr uint64_t operations_of_call = 1, operations_of_varying_call = 6;
 
 Interval declared_value(const Facts& facts, bool may_be_nan)
 {
@@ -117,16 +118,13 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     const Function& function = module.functions[index];
     if (depth >= depth_max || left == 0) return unknown(function, function.body.yields, span);
     ++depth;
-    if (varying) of_calls += operations_of_call + function.parameters.size() + function.body.yields.size();
+    of_calls += varying ? operations_of_varying_call : operations_of_call;
+    of_calls += function.parameters.size() + function.body.yields.size();
     const size_t count = function.value_types.size();
-    std::vector<Interval> values;
-    std::vector<Variation> variations;
-    if (!spare_values.empty()) values = std::move(spare_values.back()), spare_values.pop_back();
-    values.assign(count, no_value);
-    if (varying && !spare_variations.empty())
-        variations = std::move(spare_variations.back()), spare_variations.pop_back();
-    variations.assign(varying ? count : 0, Variation{});
-    Frame frame{function, std::move(values), std::move(variations), structure_of(index),
+    Results memory = take_spare();
+    memory.values.assign(count, no_value);
+    memory.variations.assign(varying ? count : 0, Variation{});
+    Frame frame{function, std::move(memory.values), std::move(memory.variations), structure_of(index),
                 varying ? tangents_of(index, arguments.variations) : no_tangents};
     store(frame, function.parameters, arguments);
     const std::optional<Span> outside = user;
@@ -135,8 +133,7 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     user = outside;
     --depth;
     Results results = gather(frame, function.body.yields);
-    spare_values.push_back(std::move(frame.values));
-    if (varying) spare_variations.push_back(std::move(frame.variations));
+    spare.push_back({std::move(frame.values), std::move(frame.variations)});
     if (function.is_library)
         for (Variation& variation : results.variations) variation.cause = {span, {}, true}, variation.kink = 0;
     return results;

@@ -66,18 +66,25 @@ IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const 
 
 // ---- several values at once
 
-IntervalEvaluator::Results IntervalEvaluator::gather(const Frame& frame, std::span<const Value> values) const
+IntervalEvaluator::Results IntervalEvaluator::take_spare()
 {
-    Results results;
-    results.values.reserve(values.size());
-    for (Value value : values) results.values.push_back(frame.values[value.index]);
-    if (!varying) return results;
-    results.variations.reserve(values.size());
-    for (Value value : values) {
-        results.variations.push_back(frame.variations[value.index]);
-        results.variations.back().has_tangent = frame.tangents.any(value);
+    if (spare.empty()) return {};
+    Results memory = std::move(spare.back());
+    spare.pop_back();
+    return memory;
+}
+
+IntervalEvaluator::Results IntervalEvaluator::gather(const Frame& frame, std::span<const Value> values,
+                                                     Results memory) const
+{
+    memory.values.resize(values.size());
+    memory.variations.resize(varying ? values.size() : 0);
+    for (size_t i = 0; i < values.size(); ++i) memory.values[i] = frame.values[values[i].index];
+    for (size_t i = 0; i < memory.variations.size(); ++i) {
+        memory.variations[i] = frame.variations[values[i].index];
+        memory.variations[i].has_tangent = frame.tangents.any(values[i]);
     }
-    return results;
+    return memory;
 }
 
 void IntervalEvaluator::store(Frame& frame, std::span<const Value> values, const Results& results)
@@ -236,7 +243,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call& callee)
 {
-    const Results arguments = gather(frame, made.operands);
+    Results arguments = gather(frame, made.operands, take_spare());
     const auto is_part = [&](Value result) { return frame.structure.is_part_of_result[result.index]; };
     const bool was_compared = std::exchange(is_compared, is_compared || std::ranges::none_of(made.results, is_part));
     Results results = call(callee.function, arguments, made.span);
@@ -246,6 +253,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call&
         if (variation.continuity != Continuity::smooth && variation.cause.span.end == 0)
             variation.cause = {made.span, {}, module.functions[callee.function].is_library};
     store(frame, made.results, results);
+    spare.push_back(std::move(arguments));
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const PointDerivative&)
@@ -268,7 +276,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const For& 
         frame.values[parameters[0].index] = exactly(trip);
         store(frame, parameters.subspan(1), carried);
         block(frame, body);
-        carried = gather(frame, body.yields);
+        carried = gather(frame, body.yields, std::move(carried));
     }
     if (depth >= depth_max || left == 0) all = unknown(frame.function, made.results, made.span);
     --depth;

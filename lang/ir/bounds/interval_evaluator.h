@@ -95,9 +95,8 @@ private:
     Dependences dependences;
     std::vector<std::map<std::vector<bool>, Activity>> activities; // by function and which parameters have tangents
     const Activity no_tangents{0, 0};
-    // Of frames that are done, and of operands: calls and operations are many, and short.
-    std::vector<std::vector<Interval>> spare_values;
-    std::vector<std::vector<Variation>> spare_variations;
+    // Memory of calls that are done, and of operands: calls and operations are many, and short.
+    std::vector<Results> spare;
     std::array<Variation, operands_max> operand_variations;
 
     std::map<uint32_t, bool> short_functions; // asked so far
@@ -106,7 +105,8 @@ private:
     bool is_short(uint32_t function);
     const Activity& tangents_of(uint32_t function, std::span<const Variation> arguments);
     // Arguments and results of calls, carried values of loops, yields of arms.
-    Results gather(const Frame& frame, std::span<const Value> values) const;
+    Results gather(const Frame& frame, std::span<const Value> values, Results memory = {}) const;
+    Results take_spare();
     void store(Frame& frame, std::span<const Value> values, const Results& results);
     void join_into(Results& all, const Results& other) const;
     Results unknown(const Function& function, std::span<const Value> values, Span cause);

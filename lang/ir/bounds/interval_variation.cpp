@@ -142,7 +142,7 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         if (op == Op::spline)
             partials = spline_partials(operands);
         else if (is_of_reals(op_info(op)))
-            partials = rules.of(op, operands, differentiated, with_curvature);
+            partials = rules.of(op, operands, result, differentiated, with_curvature);
         variation = chain(op, operands, variations, partials, with_curvature);
         const bool is_new = std::ranges::none_of(variations, &Variation::may_fault);
         const bool is_part = frame.structure.is_part_of_result[made.results[0].index];

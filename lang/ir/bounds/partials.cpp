@@ -41,7 +41,8 @@ PartialRules::Rule PartialRules::differentiated(Op op, uint32_t active, bool wit
     return rule;
 }
 
-Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t active, bool with_second)
+Partials PartialRules::of(Op op, std::span<const Interval> operands, const Interval& result, uint32_t active,
+                          bool with_second)
 {
     const std::tuple key{op, active, with_second};
     auto known = rules.find(key);
@@ -54,7 +55,9 @@ Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t ac
         Interval& value = values[made.results[0].index];
         if (auto* real = std::get_if<RealConstant>(&made.kind)) value = {real->value, real->value};
         if (auto* truth = std::get_if<WordConstant>(&made.kind)) value = exactly(Type::boolean, truth->bits);
-        if (auto* operation = std::get_if<Operation>(&made.kind)) {
+        if (made.results[0] == line.body.yields[0]) {
+            value = result; // of the operation itself
+        } else if (auto* operation = std::get_if<Operation>(&made.kind)) {
             Interval parts[operands_max];
             for (size_t k = 0; k < made.operands.size(); ++k) parts[k] = values[made.operands[k].index];
             value = evaluate(operation->op, {parts, made.operands.size()});

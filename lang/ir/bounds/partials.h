@@ -19,9 +19,10 @@ struct Partials {
 
 class PartialRules {
 public:
-    // Of a real operation of reals, with respect to the operands whose bit is set in `active`; the others are left 0.
-    // May be infinite where the true derivative has no bound. The second are left 0 unless they are wanted.
-    Partials of(Op op, std::span<const Interval> operands, uint32_t active, bool with_second);
+    // Of a real operation of reals with this result, with respect to the operands whose bit is set in `active`; the
+    // others are left 0. May be infinite where the true derivative has no bound. The second are left 0 unless they are
+    // wanted.
+    Partials of(Op op, std::span<const Interval> operands, const Interval& result, uint32_t active, bool with_second);
 
 private:
     struct Rule {

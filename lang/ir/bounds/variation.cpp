@@ -21,6 +21,11 @@ double times(double a, double b)
     return a == 0 || b == 0 ? 0 : a * b;
 }
 
+void add_product(const Interval& a, const Interval& b, Interval& sum)
+{
+    if (!a.is_zero() && !b.is_zero()) sum = add(sum, multiply(a, b));
+}
+
 // Euclidean, of the sizes of these parts.
 template <typename Parts, typename Size>
 double norm(const Parts& parts, const Size& size)
@@ -123,11 +128,11 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
 }
 
 // A gradient without bound, of partials and gradients that have some.
-bool overflows(const Partials& partials, std::span<const Variation> variations, const Variation& made)
+bool overflows(const Interval* partials, std::span<const Variation> variations, const Variation& made)
 {
     for (size_t i = 0; i < variations.size(); ++i)
         if (variations[i].is_active &&
-            !(is_bounded(partials.first[i]) && std::ranges::all_of(variations[i].gradient, is_bounded)))
+            !(is_bounded(partials[i]) && std::ranges::all_of(variations[i].gradient, is_bounded)))
             return false;
     return !std::ranges::all_of(made.gradient, is_bounded);
 }
@@ -179,6 +184,7 @@ void jump_with(const Variation& choice, Span where, Variation& variation)
 
 Variation join(const Variation& a, const Variation& b)
 {
+    if (a.crossings.empty() && b.crossings.empty()) return merge(a, b);
     return merge(settled(a), settled(b));
 }
 
@@ -218,7 +224,6 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
     if (!made.is_active) return made;
     // The direction of a length is a unit vector, and turns the slower the longer it is: as an angle does.
     const bool is_norm = is_length(op), is_radial = is_norm || traits(op).shape == Shape::angle;
-    Partials by = partials;
     double shortest = 0;
     for (const Interval& operand : operands) {
         const double least = std::max({0.0, operand.minimum, -operand.maximum});
@@ -226,30 +231,31 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
     }
     shortest = std::sqrt(shortest) / rounding_up;
     const double steepest = is_norm ? 1 : traits(op).period / (2 * std::numbers::pi) / shortest;
-    for (size_t i = 0; i < operands.size() && is_radial; ++i)
-        by.first[i] = intersect(by.first[i], around_zero(steepest));
+    Interval first[operands_max];
+    for (size_t i = 0; i < operands.size(); ++i)
+        first[i] = is_radial ? intersect(partials.first[i], around_zero(steepest)) : partials.first[i];
 
     double slope = 0, curvature = 0;
     for (size_t i = 0; i < variations.size(); ++i) {
         const Variation& a = variations[i];
         if (!a.is_active) continue;
-        slope += times(size_of(by.first[i]), a.slope);
-        for (size_t j = 0; j < axis_count; ++j)
-            made.gradient[j] = add(made.gradient[j], multiply(by.first[i], a.gradient[j]));
+        const Interval& by = first[i];
+        slope += times(size_of(by), a.slope);
+        for (size_t j = 0; j < axis_count; ++j) add_product(by, a.gradient[j], made.gradient[j]);
         if (!with_curvature) continue;
-        curvature += times(size_of(by.first[i]), a.curvature);
-        for (size_t j = 0; j < made.hessian.size(); ++j)
-            made.hessian[j] = add(made.hessian[j], multiply(by.first[i], a.hessian[j]));
+        curvature += times(size_of(by), a.curvature);
+        for (size_t j = 0; j < made.hessian.size(); ++j) add_product(by, a.hessian[j], made.hessian[j]);
         for (size_t l = 0; l < variations.size(); ++l) {
             const Variation& b = variations[l];
-            if (!b.is_active || by.second[i][l].is_zero()) continue;
-            curvature += times(size_of(by.second[i][l]), times(a.slope, b.slope));
+            const Interval& bend = partials.second[i][l];
+            if (!b.is_active || bend.is_zero()) continue;
+            curvature += times(size_of(bend), times(a.slope, b.slope));
             for (size_t j = 0; j < axis_count; ++j)
                 for (size_t k = j; k < axis_count; ++k) {
+                    if (a.gradient[j].is_zero() || b.gradient[k].is_zero()) continue;
                     const Interval product =
                         i == l && j == k ? square(a.gradient[j]) : multiply(a.gradient[j], b.gradient[k]);
-                    Interval& sum = made.hessian[pair_of[j][k]];
-                    sum = add(sum, multiply(by.second[i][l], product));
+                    add_product(bend, product, made.hessian[pair_of[j][k]]);
                 }
         }
     }
@@ -260,7 +266,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         if (with_curvature)
             curvature = std::min(curvature, bend + times(steepest, norm(variations, &Variation::curvature)));
     }
-    made.may_fault |= overflows(by, variations, made);
+    made.may_fault |= overflows(first, variations, made);
     made.slope = slope * rounding_up;
     made.curvature = curvature * rounding_up;
     tighten(made);
