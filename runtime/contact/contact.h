@@ -62,6 +62,11 @@ struct Contact {
     // No shading normal is right here, but `normal`: between the walls of a narrow groove, and on a crease that is not
     // told by its rows (crease_rows.h).
     bool on_crease = false;
+    // Of several facets that hold the probe as one (smooth_rows.h): how far the place goes across the groove between
+    // them for the hand's way, and the direction of the groove, unit, or 0 where there is none. rolls < 0: it is one
+    // facet.
+    double rolls = -1;
+    glm::dvec3 groove{0};
     glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };
 

@@ -24,6 +24,9 @@ constexpr double rises_within = 6;
 // Beyond a border or a crease the lines are those of the facet before it, up to so many times its height.
 constexpr double beyond_most = 0.5;
 
+// Of unit normals: facets beside an edge that differ by no more are one to the place on it.
+constexpr double one_plane = 1e-6;
+
 // Above the centres of curvature the foot is mostly nearer to the flat one than half an edge.
 constexpr int facets_most = 8;
 
@@ -183,6 +186,46 @@ void find_place(const FacetLines& lines, const dvec3& b, bool beyond, Foot& foot
     foot.at_m = lines.point({foot.barycentric.y, foot.barycentric.z});
 }
 
+// Of what holds the place: on an edge it goes along that alone, at a vertex nowhere.
+void find_hold(const Surface& surface, const Contact& contact, Foot& foot) noexcept
+{
+    const dvec3& b = contact.barycentric;
+    if (contact.rolls >= 0) {
+        foot.across = contact.rolls;
+        foot.line = contact.groove;
+        return;
+    }
+    const int corners = (b.x > 0) + (b.y > 0) + (b.z > 0);
+    if (corners == 3) return;
+    foot.across = 0;
+    if (corners < 2) return;
+    const uint32_t off = b.x == 0 ? 0 : b.y == 0 ? 1 : 2;
+    foot.line =
+        glm::normalize(surface.vertex_m(contact.face, previous(off)) - surface.vertex_m(contact.face, next(off)));
+}
+
+} // namespace
+
+Foot flat_foot(const Surface& surface, const Contact& contact) noexcept
+{
+    Foot foot;
+    foot.face = contact.face;
+    foot.side = contact.side;
+    foot.barycentric = contact.barycentric;
+    foot.at_m = contact.proxy_m;
+    foot.depth_m = contact.depth_m;
+    foot.way = foot.normal = foot.push = contact.normal;
+    foot.turned_per_m2 = dvec3(0);
+    foot.line = dvec3(0);
+    foot.across = 1;
+    if (glm::distance(contact.normal, contact.facet_normal) > one_plane) find_hold(surface, contact, foot);
+    foot.share = 1;
+    foot.share_dp = dvec3(0);
+    return foot;
+}
+
+namespace {
+
 // False where nothing of it is felt.
 bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, double held_above_m,
                FacetLines& lines, Foot& foot) noexcept
@@ -192,7 +235,7 @@ bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand
     for (int facet = 0; facet < facets_most; ++facet) {
         if (face != lines.face || side != lines.side) lines = FacetLines(surface, face, side);
         if (lines.flat && facet == 0 && contact.normal == contact.facet_normal && lines.sunk_m == dvec3(0)) {
-            foot = flat_foot(contact);
+            foot = flat_foot(surface, contact);
             return true;
         }
         if (!find_line(lines, hand_m, at, foot)) return false;
@@ -214,24 +257,9 @@ bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand
 
 } // namespace
 
-Foot flat_foot(const Contact& contact) noexcept
-{
-    Foot foot;
-    foot.face = contact.face;
-    foot.side = contact.side;
-    foot.barycentric = contact.barycentric;
-    foot.at_m = contact.proxy_m;
-    foot.depth_m = contact.depth_m;
-    foot.way = foot.normal = foot.push = contact.normal;
-    foot.turned_per_m2 = dvec3(0);
-    foot.share = 1;
-    foot.share_dp = dvec3(0);
-    return foot;
-}
-
 Foot paper_foot(const Surface& surface, const Contact& contact) noexcept
 {
-    Foot foot = flat_foot(contact);
+    Foot foot = flat_foot(surface, contact);
     foot.normal = foot.push = shading_normal(surface, contact.face, contact.side, contact.barycentric);
     return foot;
 }
@@ -241,7 +269,7 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& ha
 {
     Foot foot;
     if (!find_foot(surface, contact, hand_m, held_above_m, last, foot)) {
-        foot = flat_foot(contact);
+        foot = flat_foot(surface, contact);
         foot.share = 0;
     }
     return foot;

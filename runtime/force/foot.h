@@ -39,8 +39,10 @@ struct Foot {
     glm::dvec3 push;        // of a spring of depth_m: of a smooth foot minus its gradient, else `normal`
     // How at_m moves with the hand: by the weights of the second and the third corner along edges of the facet, and by
     // them the hand along `line_m`; `turned_per_m2` is `normal` over the volume of all three. Of a flat foot that is 0:
-    // it moves as the hand does, across `normal`.
+    // it moves as the hand does, across `normal`; on an edge along `line` alone, else so many times as far, `across`.
     glm::dvec3 edge_m[2], line_m[2], turned_per_m2;
+    glm::dvec3 line; // unit, or 0
+    double across;
     double share;        // 0 .. 1, of this foot in what is felt
     glm::dvec3 share_dp; // 1/m: its gradient
 
@@ -48,7 +50,10 @@ struct Foot {
     // What the hand feels of a gradient by at_m.
     glm::dvec3 felt(const glm::dvec3& gradient) const
     {
-        if (is_flat()) return gradient - glm::dot(gradient, normal) * normal;
+        if (is_flat()) {
+            const glm::dvec3 along = gradient - glm::dot(gradient, normal) * normal;
+            return across == 1 ? along : across * along + (1 - across) * glm::dot(gradient, line) * line;
+        }
         return by_weights(glm::dot(gradient, edge_m[0]), glm::dot(gradient, edge_m[1]));
     }
     // And of what changes so much with both weights.
@@ -59,7 +64,7 @@ struct Foot {
 };
 
 // As contact found it: the facets', along the normal of the contact.
-Foot flat_foot(const Contact& contact) noexcept;
+Foot flat_foot(const Surface& surface, const Contact& contact) noexcept;
 
 // The same with equation (1) of the paper: the normal between the corners' is the direction of the force.
 Foot paper_foot(const Surface& surface, const Contact& contact) noexcept;

@@ -107,7 +107,7 @@ Foot Renderer::foot_of(Touched& touched, const Contact& contact) const noexcept
     Foot foot =
         smooth   ? smooth_foot(surface, contact, hand_below(contact, probe_.radius_m), probe_.radius_m, touched.lines)
         : curved ? paper_foot(surface, contact)
-                 : flat_foot(contact);
+                 : flat_foot(surface, contact);
     if (foot.share == 0) foot.share = 1; // the flat one
     return foot;
 }
@@ -121,7 +121,8 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
     const Foot foot = foot_of(touched, contact);
     ObjectForce force = force_at(foot, body, touched, placement, contact);
     if (foot.share < 1) {
-        const ObjectForce flat = force_at(flat_foot(contact), body, touched, placement, contact);
+        const ObjectForce flat =
+            force_at(flat_foot(*touched.object->surface, contact), body, touched, placement, contact);
         force.mix_in(flat, 1 - foot.share, -placement.direction_to_world(foot.share_dp));
     }
     return force;

@@ -139,7 +139,7 @@ void Renderer::hold_together(const Body& body, std::span<Row> rows, bool tail) n
         row.share = share_of(row.contact, placement.direction_to_object(way_m));
         const Contact whole = row.whole();
         const bool smooth = is_smooth(*touched.object->surface);
-        const Foot foot = smooth ? foot_of(touched, whole) : flat_foot(whole);
+        const Foot foot = smooth ? foot_of(touched, whole) : flat_foot(*touched.object->surface, whole);
         const auto [push_m, depth_m] = bare_push(foot, whole);
         row.bare_m = depth_m;
         bare_m[i] = placement.direction_to_world(row.share * push_m);

@@ -1,6 +1,7 @@
 #include "runtime/render/smooth_rows.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace haptel::runtime {
 
@@ -9,6 +10,9 @@ namespace {
 // Of an edge, and of a normal: feet that are nearer to each other are one, found from two sides. At one place of a
 // crease the normals differ.
 constexpr double same_foot = 1e-6;
+
+// Sine of the angle between what is one direction.
+constexpr double one_direction = 1e-6;
 
 bool are_one(const Foot& a, const Foot& b)
 {
@@ -20,6 +24,8 @@ bool are_one(const Foot& a, const Foot& b)
 // The sum of both, held off the same place.
 void add(Contact& row, const Contact& contact, double held_above_m)
 {
+    const glm::dvec3 groove = glm::cross(row.normal, contact.normal);
+    const double sine = glm::length(groove);
     const glm::dvec3 centre_m = row.proxy_m + held_above_m * row.normal;
     const glm::dvec3 way_m = row.depth_m * row.normal + contact.depth_m * contact.normal;
     const double depth_m = glm::length(way_m);
@@ -28,6 +34,12 @@ void add(Contact& row, const Contact& contact, double held_above_m)
     row.depth_m = depth_m;
     row.lag_m += contact.lag_m;
     row.proxy_m = centre_m - held_above_m * row.normal;
+    if (row.rolls < 0 && sine < one_direction) return; // as one facet
+    if (row.rolls < 0)
+        row.groove = groove / sine;
+    else if (std::fabs(glm::dot(row.groove, contact.normal)) > one_direction)
+        row.groove = glm::dvec3(0); // a third one ends it
+    row.rolls = held_above_m / depth_m;
 }
 
 } // namespace

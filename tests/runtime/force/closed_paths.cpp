@@ -170,6 +170,25 @@ TEST_CASE("in hollow balls of triangles closed paths give no energy")
     }
 }
 
+TEST_CASE("in hollow balls not much wider than a ball with a texture closed paths give no energy")
+{
+    // There the flat facets are felt, too: the place goes on them the farther, the less deep the hand is.
+    Scene scene = bare_scene(ball_mesh(3, 0.02), solid_texture(50e-6));
+    scene.probe = {ProbeKind::sphere, 0.15, 6e-3};
+    const auto touched = shared(std::move(scene));
+    const Surface& surface = *touched->objects[0].surface;
+    std::mt19937_64 random(5);
+    for (int i = 0; i < tries(20); ++i) {
+        Path path = random_path(surface, 2e-3, random);
+        path.normal = -path.normal;
+        path.depth_m = 0.2e-3 * (1 + i % 5);
+        path.swing_m = 0.5 * path.depth_m;
+        CAPTURE(i, path.width_m, path.depth_m);
+        const Work work = work_once_round(touched, path, 20'000);
+        CHECK(std::fabs(work.given_j) < 1e-4 * work.pressed_j);
+    }
+}
+
 TEST_CASE("in a smooth valley narrower than the ball closed paths give less than a thousandth")
 {
     // The ball rests on both flanks, which hold it together (runtime/render/renderer_rows.cpp).

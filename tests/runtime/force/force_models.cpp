@@ -81,7 +81,7 @@ struct Solid {
 
 Foot foot_at(double depth_m, const dvec3& way, const dvec3& normal)
 {
-    Foot foot = flat_foot({});
+    Foot foot = flat_foot(Surface(), {});
     foot.depth_m = depth_m;
     foot.way = way;
     foot.normal = foot.push = normal;
