@@ -1,5 +1,6 @@
 #include "runtime/force/foot.h"
 
+#include "runtime/geometry/rise.h"
 #include "runtime/surface/corner.h"
 #include "runtime/texture/shading.h"
 
@@ -34,17 +35,6 @@ constexpr int facets_most = 8;
 // where they would overshoot, they are Newton's.
 constexpr int steps_most = 8;
 constexpr double step_settled = 1e-4, bends_most = 0.25, on_edge = 1e-10;
-
-// Rises from 0 to 1 over 0 .. 1, and its derivative.
-struct Rise {
-    double value, slope;
-    explicit Rise(double x) : value(0), slope(0)
-    {
-        x = std::clamp(x, 0.0, 1.0);
-        value = x * x * (3 - 2 * x);
-        slope = 6 * x * (1 - x);
-    }
-};
 
 // The line through the hand, t of its normal below its point.
 struct OnLine {

@@ -131,6 +131,10 @@ private:
         // base surface that is also below the texture.
         double static_share = 0, dynamic_share = 0;
         Grain grain;                      // of the friction, object space
+        glm::dvec3 spring_n{0};           // of force_n: by the spring of the surface
+        double felt_n_per_m = 0;          // of that spring
+        double raised_m = 0;              // where it does not push: how far that is over the facets, less than 0,
+        glm::dvec3 raised_dp{0};          // and the gradient of it by the hand's place, world frame
         double surface_j = 0, held_j = 0; // in the spring of the surface, and with that of friction
         uint32_t faults = 0;
         double swing_hz = 0;                         // of a vibration that the texture asks for
@@ -139,14 +143,24 @@ private:
 
         void mix_in(const ObjectForce& other, double share, const glm::dvec3& share_dp) noexcept;
     };
-    // One of several contacts, in its object's space.
+    // One of several contacts.
     struct Row {
         uint32_t part;
-        bool is_first; // of the part
-        Contact contact;
-        double share = 1;     // of how deep the hand is below what is touched there, held by this contact
-        double bare_m = 0;    // how deep that is, of the surface without its texture
-        glm::dvec3 more_m{0}; // by which its spring pushes beyond its share of that, world frame
+        bool is_first;    // of the part
+        Contact contact;  // in its object's space
+        double share = 1; // of how deep the hand is below what is touched there, held by this contact
+        // Of what is held together with others, in the world frame; `_dp`: gradients by the hand's place.
+        glm::dvec3 normal{0}; // unit
+        double held = 0;      // 0 .. 1, in how far places on the others stay where they are along it:
+        double still_m = 0;   // by so much of its depth
+        glm::dvec3 still_dp{0};
+        double off_m = 0; // how far the hand is from where this one does not hold
+        glm::dvec3 off_dp{0};
+        double raised_m = 0; // what is felt, above the facet
+        glm::dvec3 raised_dp{0};
+        double on_m = 0; // how far the probe goes on at most because that is below the facet
+        glm::dvec3 on_dp{0};
+        ObjectForce force{};
 
         Contact whole() const // as if it held all of it
         {
@@ -155,6 +169,14 @@ private:
             all.lag_m /= share;
             return all;
         }
+    };
+    // At one end of the probe.
+    struct HeldTogether {
+        std::array<Row*, CreaseRows::rows_most> row;
+        std::size_t count = 0;
+        glm::dvec3 way_m{0}; // from the hand to the proxy
+
+        std::span<Row* const> rows() const { return {row.data(), count}; }
     };
     struct Skipped { // in this tick
         bool query = true, texture = true, octaves = false, mapping = false;
@@ -181,7 +203,11 @@ private:
                          const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
     std::span<Row> rows_of(const Body& body, std::span<const Contact> contacts,
                            std::span<const PartContacts> parts) noexcept;
-    void hold_together(const Body& body, std::span<Row> rows, bool tail) noexcept;
+    HeldTogether held_together(const Body& body, std::span<Row> rows, bool tail) const noexcept;
+    static void raise(Row& row, const HeldTogether& held) noexcept;
+    static void ease_in(const HeldTogether& held) noexcept;
+    static void push_together(const HeldTogether& held) noexcept;
+    static glm::dvec3 left_by_others(const Row& row, std::span<Row* const> rows) noexcept;
     void feel(Body& body, uint32_t part, bool is_first, const Contact& contact, const ObjectForce& force,
               const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
     double grown_since_m(const Renderer& before) const noexcept; // a ball in place of another

@@ -132,6 +132,10 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
 void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const glm::dvec3& share_dp) noexcept
 {
     force_n = glm::mix(force_n, other.force_n, share) - (other.surface_j - surface_j) * share_dp;
+    spring_n = glm::mix(spring_n, other.spring_n, share) - (other.surface_j - surface_j) * share_dp;
+    felt_n_per_m = std::lerp(felt_n_per_m, other.felt_n_per_m, share);
+    raised_dp = glm::mix(raised_dp, other.raised_dp, share) + (other.raised_m - raised_m) * share_dp;
+    raised_m = std::lerp(raised_m, other.raised_m, share);
     surface_j = std::lerp(surface_j, other.surface_j, share);
     held_j = std::lerp(held_j, other.held_j, share);
     height_m = std::lerp(height_m, other.height_m, share);
@@ -181,6 +185,7 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     const ModelForce elastic = model_force(force_rule_, foot, stiffness, texture);
     const double felt_stiffness = stiffness * texture.stiffness_scale;
 
+    result.felt_n_per_m = felt_stiffness;
     result.height_m = texture.height_m;
     result.normal = placement.direction_to_world(foot.normal);
     result.faults = texture.faults;
@@ -188,8 +193,14 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     result.static_share = texture.static_friction_scale * below;
     result.dynamic_share = texture.dynamic_friction_scale * below;
     result.grain = texture.grain;
-    if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
+    if (elastic.depth_m == 0) { // below the base surface, but not yet below the texture
+        const bool displaced = force_rule_.model == ForceModel::displaced;
+        result.raised_m = (displaced ? foot.depth_m + texture.envelope_m : 0) - contact.depth_m;
+        result.raised_dp = placement.direction_to_world(contact.normal - foot.push + foot.felt(texture.gradient));
+        return result;
+    }
 
+    result.spring_n = placement.direction_to_world(elastic.force_n);
     result.surface_j = felt_stiffness * elastic.depth_m * elastic.depth_m / 2;
     result.held_j = result.surface_j + felt_stiffness * glm::dot(contact.lag_m, contact.lag_m) / 2;
     const double damping = damping_n(body, object.material.damping_n_s_per_m * texture.damping_scale, placement,
@@ -205,7 +216,7 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     }
     const double along_n = std::max(damping + swing_n, -felt_stiffness * elastic.depth_m); // a surface never pulls
     result.force_n =
-        placement.direction_to_world(elastic.force_n + felt_stiffness * contact.lag_m + along_n * foot.normal);
+        result.spring_n + placement.direction_to_world(felt_stiffness * contact.lag_m + along_n * foot.normal);
     return result;
 }
 

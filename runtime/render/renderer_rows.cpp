@@ -1,22 +1,25 @@
 // What several contacts of one probe hold together.
 //
-// Alone, a contact pushes with a spring: minus the gradient of phi(hand), half the square of how deep the hand is. Of
-// several at one end of the probe, each should feel the hand where the others have pushed it:
+// Alone, a contact pushes with a spring: minus the gradient of half the square of how deep the hand is below what is
+// felt. Of several at one end of the probe, X is the shortest way from the hand to a place above all of
 //
-//   push i = -grad phi_i(x - push i),   x = hand + sum of all pushes
+//   n_i . X >= d_i + h_i,
 //
-// For psi_i(x) = phi_i(x - push i) - |push i|^2 / 2 has the gradient -push i, so |x - hand|^2 / 2 + sum of psi_i(x) is
-// stationary at x, and the sum of all pushes is minus its gradient by the hand: a potential, whatever phi_i are. On
-// flat facets x is the proxy and the pushes are those of the contacts. A smooth surface is a little beside its facets,
-// so each is laid anew as a plane: where it is, and as it is inclined, for the hand below the proxy. What this one step
-// leaves on closed paths is measured in tests/runtime/force/closed_paths.cpp. More steps leave less, but not where the
-// hand is as deep as the surface is round: there they would not settle, and the force would step from tick to tick.
+// d_i how deep the hand is below facet i, h_i <= 0 by how much lower than it the texture and the smooth surface are.
+// What all push together is minus the gradient of |X|^2 / 2: with the push p_i of each, how much of X is along n_i,
 //
-// Textures, friction and damping are felt by shares: of each contact as if it held all of the hand, times what it
-// holds.
+//   sum of p_i (n_i - grad h_i).
+//
+// h_i is looked up straight below the place to which the others push the hand, and so it stays where they hold it: of
+// what holds little, little, so that nothing steps where a contact begins. The gradient counts all that changes with
+// the hand but the turning of n_i where a ball rests on an edge. What that leaves on closed paths is measured in
+// tests/runtime/force/closed_paths.cpp.
+//
+// Friction and damping are felt by shares: of each contact as if it held all of the hand, times what it holds.
 #include "runtime/render/renderer.h"
 
 #include "runtime/contact/project.h"
+#include "runtime/geometry/rise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,13 +30,17 @@ namespace {
 
 constexpr double exact_within = 1e-9; // of the way from the hand to the proxy
 
-// Of how the depth changes along its normal. It is nearly 1, but less where the shares of a smooth and a flat foot
-// change.
-constexpr double least_slope = 0.5;
+// Of the way from the hand to the proxy: what holds so much of it keeps the hand's places on what else is touched
+// still. With five times as much closed paths in smooth valleys give ten times as much.
+constexpr double holds_still = 0.05;
+
+// Squared sine of the angle within which facets count as of one direction, 6 degrees: what holds goes over from one to
+// the other on so short a way that the force would step.
+constexpr double one_direction = 0.01;
 
 bool is_held_at(const Contact& contact, bool tail)
 {
-    return (contact.along > 0) == tail && !contact.by_shaft && !contact.unsettled;
+    return contact.depth_m > 0 && (contact.along > 0) == tail && !contact.by_shaft && !contact.unsettled;
 }
 
 // What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
@@ -45,22 +52,20 @@ double share_of(const Contact& contact, const glm::dvec3& way_m)
     return contact.depth_m > 0 && contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
 }
 
-// Minus the gradient of half the square of `depth_m`.
-struct BarePush {
-    glm::dvec3 push_m;
-    double depth_m;
-};
-
-BarePush bare_push(const Foot& foot, const Contact& contact)
-{
-    const double depth_m = std::max(0.0, foot.depth_m);
-    if (foot.share == 1) return {depth_m * foot.push, depth_m};
-    const double s = foot.share, half = depth_m * depth_m / 2, half_flat = contact.depth_m * contact.depth_m / 2;
-    return {s * depth_m * foot.push + (1 - s) * contact.depth_m * contact.normal - (half - half_flat) * foot.share_dp,
-            std::sqrt(2 * std::lerp(half_flat, half, s))};
-}
-
 } // namespace
+
+// What the others leave of a row's normal, each in so far as it holds.
+glm::dvec3 Renderer::left_by_others(const Row& row, std::span<Row* const> rows) noexcept
+{
+    glm::dmat3 left(1);
+    for (const Row* other : rows) {
+        if (other == &row || other->held == 0) continue;
+        const glm::dvec3 across = left * other->normal;
+        const double stays = glm::dot(other->normal, across) + one_direction + (1 / other->held - 1);
+        left -= glm::outerProduct(across / stays, across);
+    }
+    return left * row.normal;
+}
 
 void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, std::span<const PartContacts> parts,
                                const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
@@ -74,21 +79,17 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
         return;
     }
     const std::span<Row> rows = rows_of(body, contacts, parts);
-    for (const bool tail : {false, true}) hold_together(body, rows, tail);
-    for (const Row& row : rows) { // what presses most first, of a stylus its tip
+    const std::array held{held_together(body, rows, false), held_together(body, rows, true)};
+    for (Row& row : rows) {
         Touched& touched = objects_[body.objects.number(row.part)];
         if (row.is_first) swing_on(touched);
-        ObjectForce force = force_of(body, touched, body.placement_of(*touched.object), row.whole());
-        force.force_n *= row.share;
-        if (row.bare_m > 0) { // as much of it as of the spring is felt, below a texture and by its stiffness
-            const glm::dvec3 more_n = 2 * force.surface_j / (row.bare_m * row.bare_m) * row.more_m;
-            force.force_n += more_n;
-            const double along_n = glm::dot(force.force_n, force.normal);
-            if (along_n < 0) force.force_n -= std::max(along_n, -glm::length(more_n)) * force.normal; // never pulls
-        }
-        force.held_j *= row.share;
-        feel(body, row.part, row.is_first, row.contact, force, pose, result, skipped);
+        row.force = force_of(body, touched, body.placement_of(*touched.object), row.whole());
+        row.force.force_n *= row.share;
+        row.force.held_j *= row.share;
     }
+    for (const HeldTogether& end : held) push_together(end);
+    for (const Row& row : rows) // what presses most first, of a stylus its tip
+        feel(body, row.part, row.is_first, row.contact, row.force, pose, result, skipped);
 }
 
 std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Contact> contacts,
@@ -113,60 +114,116 @@ std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Con
 }
 
 // Of one end of the probe.
-void Renderer::hold_together(const Body& body, std::span<Row> rows, bool tail) noexcept
+Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> rows, bool tail) const noexcept
 {
-    constexpr std::size_t most = CreaseRows::rows_most;
-    std::array<Row*, most> held;
-    std::array<glm::dvec3, most> bare_m; // of each alone, world frame
-    std::array<ShaftRow, most> planes;
-    std::size_t count = 0;
-    glm::dvec3 way_m(0); // from the hand to the proxy
+    HeldTogether held;
     const auto placement_of = [&](const Row& row) -> const Placement& {
         return body.placement_of(*objects_[body.objects.number(row.part)].object);
     };
     for (Row& row : rows) {
         if (!is_held_at(row.contact, tail)) continue;
-        way_m += placement_of(row).direction_to_world(row.contact.depth_m * row.contact.normal);
-        held[count++] = &row;
+        held.way_m += placement_of(row).direction_to_world(row.contact.depth_m * row.contact.normal);
+        held.row[held.count++] = &row;
     }
-    if (count < 2) return;
-    bool all_flat = true;
-    double off_m = 0; // by which pushes on the smooth surface differ from those on its facets
-    for (std::size_t i = 0; i < count; ++i) {
-        Row& row = *held[i];
-        const Placement& placement = placement_of(row);
-        Touched& touched = objects_[body.objects.number(row.part)];
-        row.share = share_of(row.contact, placement.direction_to_object(way_m));
-        const Contact whole = row.whole();
-        const bool smooth = is_smooth(*touched.object->surface);
-        const Foot foot = smooth ? foot_of(touched, whole) : flat_foot(*touched.object->surface, whole);
-        const auto [push_m, depth_m] = bare_push(foot, whole);
-        row.bare_m = depth_m;
-        bare_m[i] = placement.direction_to_world(row.share * push_m);
-        off_m += glm::distance(push_m * row.share, row.contact.depth_m * row.contact.normal);
-        all_flat = all_flat && foot.is_flat();
-        // Of the hand below the proxy it is `depth_m` over the slope away. Its push is `slope` times as long as the
-        // hand is deep where the others push it, so it ends farther out than there; alone, at all of `push_m`.
-        const double length_m = glm::length(push_m),
-                     slope = length_m > 0 ? std::max(least_slope, length_m / depth_m) : 1.0;
-        const glm::dvec3 normal = length_m > 0 ? push_m / length_m : whole.normal;
-        planes[i].normal = placement.direction_to_world(normal);
-        planes[i].offset = glm::dot(planes[i].normal, way_m) - whole.depth_m * glm::dot(normal, whole.normal) +
-                           depth_m / slope + (1 - 1 / (slope * slope)) * row.share * length_m;
+    const double way_m = glm::length(held.way_m);
+    if (held.count < 2 || !(way_m > 0)) return {};
+    for (Row* row : held.rows()) {
+        row->normal = placement_of(*row).direction_to_world(row->contact.normal);
+        row->share = share_of(row->contact, placement_of(*row).direction_to_object(held.way_m));
     }
-    if (all_flat) return;
-    // The others may be so far beside their facets that they need a row before the probe touches it: up to twice as
-    // deep it takes part less, so that it begins without a step, and its force grows at most by half faster than its
-    // depth.
-    for (std::size_t i = 0; i < count; ++i) planes[i].offset -= std::max(0.0, off_m - held[i]->contact.depth_m / 2);
+    for (Row* row : held.rows()) row->held = Rise(row->contact.depth_m / (holds_still * way_m)).value;
+    for (Row* row : held.rows()) {
+        const glm::dvec3 left = left_by_others(*row, held.rows());
+        const double alone = glm::dot(row->normal, left);
+        const glm::dvec3 depth_dp = -left / alone;
+        const double depth_m = row->contact.depth_m, q = depth_m / (holds_still * way_m);
+        const Rise rise(q);
+        row->still_m = depth_m * rise.value;
+        row->still_dp =
+            holds_still * q * q * rise.slope / way_m * held.way_m + (rise.value + q * rise.slope) * depth_dp;
+        row->off_m = std::sqrt(alone) * depth_m;
+        row->off_dp = std::sqrt(alone) * depth_dp;
+    }
+    for (Row* row : held.rows()) {
+        glm::dvec3 moved_m(0);
+        for (const Row* other : held.rows())
+            if (other != row)
+                moved_m += (other->still_m - other->contact.depth_m) * tangential(other->normal, row->normal);
+        row->contact.proxy_m += placement_of(*row).direction_to_object(moved_m);
+    }
+    return held;
+}
+
+// By how much what is felt on a row is above its facet, mostly less than 0, and how that changes with the hand's place.
+void Renderer::raise(Row& row, const HeldTogether& held) noexcept
+{
+    const ObjectForce& force = row.force;
+    const double stiffness = force.felt_n_per_m,
+                 felt_m = stiffness > 0 ? std::sqrt(2 * force.surface_j / stiffness) : 0.0;
+    row.raised_m = felt_m > 0 ? felt_m - row.whole().depth_m : force.raised_m;
+    const glm::dvec3 below_dp = felt_m > 0 ? row.normal - force.spring_n / (stiffness * felt_m) : force.raised_dp;
+    row.raised_dp = below_dp;
+    for (const Row* other : held.rows())
+        if (other != &row) row.raised_dp += glm::dot(below_dp, tangential(other->normal, row.normal)) * other->still_dp;
+    if (!(row.raised_m < 0)) return;
+    const double left = std::max(0.0, 1 + row.off_m / row.raised_m);
+    row.on_m = -row.raised_m * (1 - left * left);
+    row.on_dp = 2 * left * row.off_dp - (left > 0 ? (1 - left) * (1 - left) : 1.0) * row.raised_dp;
+}
+
+// Where the others are lower than this row is, the probe may come to it before contact does: up to five times as deep
+// as they are it is lower, too, so that it begins without a step, and its force grows at most by 0.4 faster than its
+// depth.
+void Renderer::ease_in(const HeldTogether& held) noexcept
+{
+    double all_m = 0;
+    glm::dvec3 all_dp(0);
+    for (const Row* row : held.rows()) {
+        all_m += row->on_m;
+        all_dp += row->on_dp;
+    }
+    for (Row* row : held.rows()) {
+        const double others_m = all_m - row->on_m + row->raised_m,
+                     left = others_m > 0 ? 1 - row->off_m / (5 * others_m) : 0;
+        if (left <= 0) continue;
+        const glm::dvec3 others_dp = all_dp - row->on_dp + row->raised_dp;
+        row->raised_m -= others_m * left * left;
+        row->raised_dp -= (left * left + 2 * (1 - left) * left) * others_dp - 0.4 * left * row->off_dp;
+    }
+}
+
+void Renderer::push_together(const HeldTogether& held) noexcept
+{
+    const double way_m = glm::length(held.way_m);
+    const auto is_facet = [&](const Row* row) {
+        return std::fabs(row->raised_m) <= exact_within * way_m && glm::length(row->raised_dp) <= exact_within;
+    };
+    for (Row* row : held.rows()) raise(*row, held);
+    if (std::ranges::all_of(held.rows(), is_facet)) return;
+    ease_in(held);
+    std::array<ShaftRow, CreaseRows::rows_most> planes;
+    for (std::size_t i = 0; i < held.count; ++i) {
+        const Row& row = *held.row[i];
+        planes[i] = {row.normal, glm::dot(row.normal, held.way_m) + row.raised_m, 0};
+    }
     const Projection<Shaft> at =
-        project(std::span<const ShaftRow>(planes.data(), count), {}, exact_within * glm::length(way_m));
+        project(std::span<const ShaftRow>(planes.data(), held.count), {}, exact_within * way_m);
     double pushes_m = 0;
     for (std::size_t i = 0; i < at.count; ++i) pushes_m += at.push[i];
     const double told = std::min(1.0, opposed_most * glm::length(at.at.tip) / pushes_m);
-    for (std::size_t i = 0; i < count; ++i) held[i]->more_m = -told * bare_m[i];
-    for (std::size_t i = 0; i < at.count; ++i)
-        held[at.active[i]]->more_m += told * at.push[i] * planes[at.active[i]].normal;
+    for (std::size_t i = 0; i < held.count; ++i) {
+        Row& row = *held.row[i];
+        const auto active = std::find(at.active.begin(), at.active.begin() + at.count, i);
+        const double push_m = active == at.active.begin() + at.count
+                                  ? 0.0
+                                  : at.push[static_cast<std::size_t>(active - at.active.begin())];
+        ObjectForce& force = row.force;
+        const glm::dvec3 spring_n = force.felt_n_per_m * push_m * (row.normal - row.raised_dp),
+                         more_n = told * (spring_n - row.share * force.spring_n);
+        force.force_n += more_n;
+        const double along_n = glm::dot(force.force_n, force.normal);
+        if (along_n < 0) force.force_n -= std::max(along_n, -glm::length(more_n)) * force.normal; // never pulls
+    }
 }
 
 // Adds it to what the hand feels.
