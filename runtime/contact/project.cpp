@@ -25,33 +25,6 @@ constexpr double independent(const Shaft&)
     return 1e-5;
 }
 
-double dot(const glm::dvec3& a, const glm::dvec3& b)
-{
-    return glm::dot(a, b);
-}
-double dot(const Shaft& a, const Shaft& b)
-{
-    return glm::dot(a.tip, b.tip) + glm::dot(a.tail, b.tail);
-}
-
-void add(glm::dvec3& to, double factor, const glm::dvec3& what)
-{
-    to += factor * what;
-}
-void add(Shaft& to, double factor, const Shaft& what)
-{
-    to.tip += factor * what.tip, to.tail += factor * what.tail;
-}
-
-glm::dvec3 over(const glm::dvec3& a, double length)
-{
-    return a / length;
-}
-Shaft over(const Shaft& a, double length)
-{
-    return {a.tip / length, a.tail / length};
-}
-
 // How a place moves by a push of the row, and how high it is over it.
 glm::dvec3 direction(const HalfSpace& row, EndsGive)
 {
@@ -89,11 +62,11 @@ Basis<Place> basis_of(std::span<const Row> rows, const Projection<Place>& now, E
         for (int twice = 0; twice < 2; ++twice) // once leaves the rounding of nearly equal ones
             for (std::size_t j = 0; j < i; ++j) {
                 const double along = dot(left, basis.unit[j]);
-                add(left, -along, basis.unit[j]);
+                left -= along * basis.unit[j];
                 for (std::size_t k = 0; k <= j; ++k) basis.made[i][k] -= along * basis.made[j][k];
             }
         const double length = std::sqrt(dot(left, left));
-        basis.unit[i] = over(left, length);
+        basis.unit[i] = left / length;
         for (double& part : basis.made[i]) part /= length;
     }
     return basis;
@@ -123,7 +96,7 @@ bool take_in(std::span<const Row> rows, uint32_t row, EndsGive gives, Projection
         for (int twice = 0; twice < 2; ++twice)
             for (std::size_t i = 0; i < now.count; ++i) {
                 const double along = dot(rest, basis.unit[i]);
-                add(rest, -along, basis.unit[i]);
+                rest -= along * basis.unit[i];
                 for (std::size_t k = 0; k <= i; ++k) share[k] += along * basis.made[i][k];
             }
         std::size_t first_to_go = now.count;
@@ -139,7 +112,7 @@ bool take_in(std::span<const Row> rows, uint32_t row, EndsGive gives, Projection
             can_move ? -height(rows[row], now.at) / square : std::numeric_limits<double>::infinity();
         if (!can_move && first_to_go == now.count) return false;
         const double step = std::min(until_it_goes, until_it_holds);
-        if (can_move) add(now.at, step, rest);
+        if (can_move) now.at += step * rest;
         for (std::size_t i = 0; i < now.count; ++i) now.push[i] -= step * share[i];
         push += step;
         if (until_it_holds <= until_it_goes) {

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,8 +19,38 @@ struct Shaft {
     glm::dvec3 tip{0}, tail{0};
 
     glm::dvec3 at(double share) const { return tip + share * (tail - tip); }
+    // A push of its point at `share`, as its ends feel it.
+    static Shaft pushed_at(double share, const glm::dvec3& push) { return {(1 - share) * push, share * push}; }
+
+    Shaft& operator+=(const Shaft& other) { return tip += other.tip, tail += other.tail, *this; }
+    Shaft& operator-=(const Shaft& other) { return tip -= other.tip, tail -= other.tail, *this; }
     bool operator==(const Shaft&) const = default;
 };
+
+inline Shaft operator+(Shaft a, const Shaft& b)
+{
+    return a += b;
+}
+inline Shaft operator-(Shaft a, const Shaft& b)
+{
+    return a -= b;
+}
+inline Shaft operator*(double factor, const Shaft& a)
+{
+    return {factor * a.tip, factor * a.tail};
+}
+inline Shaft operator/(const Shaft& a, double divisor)
+{
+    return {a.tip / divisor, a.tail / divisor};
+}
+inline double dot(const Shaft& a, const Shaft& b)
+{
+    return glm::dot(a.tip, b.tip) + glm::dot(a.tail, b.tail);
+}
+inline double length(const Shaft& a)
+{
+    return std::sqrt(dot(a, a));
+}
 
 // All places x of a point with dot(normal, x) >= offset.
 struct HalfSpace {

@@ -149,19 +149,23 @@ private:
         bool is_first;    // of the part
         Contact contact;  // in its object's space
         double share = 1; // of how deep the hand is below what is touched there, held by this contact
-        // Of what is held together with others, in the world frame; `_dp`: gradients by the hand's place.
+        // Of what is held together with others, in the world frame; `_dp`: gradients by the places of both ends.
         glm::dvec3 normal{0}; // unit
+        Shaft direction{};    // of its push
         double held = 0;      // 0 .. 1, in how far places on the others stay where they are along it:
         double still_m = 0;   // by so much of its depth
-        glm::dvec3 still_dp{0};
+        Shaft still_dp{};
         double off_m = 0; // how far the hand is from where this one does not hold
-        glm::dvec3 off_dp{0};
+        Shaft off_dp{};
         double raised_m = 0; // what is felt, above the facet
-        glm::dvec3 raised_dp{0};
+        Shaft raised_dp{};
         double on_m = 0; // how far the probe goes on at most because that is below the facet
-        glm::dvec3 on_dp{0};
+        Shaft on_dp{};
+        Shaft at_ends_n{}; // felt there besides `force`
         ObjectForce force{};
 
+        // How a push of this one moves the place of another, along what is touched there.
+        glm::dvec3 moves(const Row& other) const { return tangential(direction.at(other.contact.along), other.normal); }
         Contact whole() const // as if it held all of it
         {
             Contact all = contact;
@@ -170,11 +174,11 @@ private:
             return all;
         }
     };
-    // At one end of the probe.
+    // At one end of the probe, or of all of it where its shaft touches.
     struct HeldTogether {
         std::array<Row*, CreaseRows::rows_most> row;
         std::size_t count = 0;
-        glm::dvec3 way_m{0}; // from the hand to the proxy
+        Shaft way_m; // from the hand to the proxy
 
         std::span<Row* const> rows() const { return {row.data(), count}; }
     };
@@ -203,11 +207,12 @@ private:
                          const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
     std::span<Row> rows_of(const Body& body, std::span<const Contact> contacts,
                            std::span<const PartContacts> parts) noexcept;
-    HeldTogether held_together(const Body& body, std::span<Row> rows, bool tail) const noexcept;
+    enum class Held : uint8_t { at_tip, at_tail, anywhere };
+    HeldTogether held_together(const Body& body, std::span<Row> rows, Held where) const noexcept;
     static void raise(Row& row, const HeldTogether& held) noexcept;
     static void ease_in(const HeldTogether& held) noexcept;
     static void push_together(const HeldTogether& held) noexcept;
-    static glm::dvec3 left_by_others(const Row& row, std::span<Row* const> rows) noexcept;
+    static void hold_still(const HeldTogether& held) noexcept;
     void feel(Body& body, uint32_t part, bool is_first, const Contact& contact, const ObjectForce& force,
               const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
     double grown_since_m(const Renderer& before) const noexcept; // a ball in place of another

@@ -92,8 +92,10 @@ Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material&
     const double damping =
         damping_n(body, material.damping_n_s_per_m, placement, contact, contact.normal, contact.depth_m, stiffness);
     result.normal = placement.direction_to_world(contact.normal);
-    result.force_n = placement.direction_to_world((stiffness * contact.depth_m + damping) * contact.normal);
-    result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
+    result.felt_n_per_m = stiffness;
+    result.spring_n = stiffness * contact.depth_m * result.normal;
+    result.force_n = result.spring_n + damping * result.normal;
+    result.surface_j = result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
     return result;
 }
 

@@ -6,6 +6,7 @@
 //   n_i . X >= d_i + h_i,
 //
 // d_i how deep the hand is below facet i, h_i <= 0 by how much lower than it the texture and the smooth surface are.
+// Where the shaft of a stylus touches, too, X is the way of both its ends, and n_i . X that of the place which touches.
 // What all push together is minus the gradient of |X|^2 / 2: with the push p_i of each, how much of X is along n_i,
 //
 //   sum of p_i (n_i - grad h_i).
@@ -38,34 +39,21 @@ constexpr double holds_still = 0.05;
 // the other on so short a way that the force would step.
 constexpr double one_direction = 0.01;
 
-bool is_held_at(const Contact& contact, bool tail)
-{
-    return contact.depth_m > 0 && (contact.along > 0) == tail && !contact.by_shaft && !contact.unsettled;
-}
-
 // What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
 // hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
 // the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
-double share_of(const Contact& contact, const glm::dvec3& way_m)
+double share_of(const Contact& contact, const glm::dvec3& normal, const glm::dvec3& way_m)
 {
-    const double below_m = glm::dot(way_m, contact.normal);
+    const double below_m = glm::dot(way_m, normal);
     return contact.depth_m > 0 && contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
 }
 
-} // namespace
-
-// What the others leave of a row's normal, each in so far as it holds.
-glm::dvec3 Renderer::left_by_others(const Row& row, std::span<Row* const> rows) noexcept
+Shaft in_object(const Placement& placement, const Shaft& way)
 {
-    glm::dmat3 left(1);
-    for (const Row* other : rows) {
-        if (other == &row || other->held == 0) continue;
-        const glm::dvec3 across = left * other->normal;
-        const double stays = glm::dot(other->normal, across) + one_direction + (1 / other->held - 1);
-        left -= glm::outerProduct(across / stays, across);
-    }
-    return left * row.normal;
+    return {placement.direction_to_object(way.tip), placement.direction_to_object(way.tail)};
 }
+
+} // namespace
 
 void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, std::span<const PartContacts> parts,
                                const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
@@ -79,7 +67,10 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
         return;
     }
     const std::span<Row> rows = rows_of(body, contacts, parts);
-    const std::array held{held_together(body, rows, false), held_together(body, rows, true)};
+    const bool by_shaft =
+        std::ranges::any_of(contacts, [](const Contact& contact) { return contact.by_shaft && !contact.unsettled; });
+    const std::array held{held_together(body, rows, by_shaft ? Held::anywhere : Held::at_tip),
+                          by_shaft ? HeldTogether() : held_together(body, rows, Held::at_tail)};
     for (Row& row : rows) {
         Touched& touched = objects_[body.objects.number(row.part)];
         if (row.is_first) swing_on(touched);
@@ -88,8 +79,11 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
         row.force.held_j *= row.share;
     }
     for (const HeldTogether& end : held) push_together(end);
-    for (const Row& row : rows) // what presses most first, of a stylus its tip
+    for (const Row& row : rows) { // what presses most first, of a stylus its tip
         feel(body, row.part, row.is_first, row.contact, row.force, pose, result, skipped);
+        add_force(result, pose, 0, row.at_ends_n.tip);
+        add_force(result, pose, 1, row.at_ends_n.tail);
+    }
 }
 
 std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Contact> contacts,
@@ -100,11 +94,10 @@ std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Con
         Touched& touched = objects_[body.objects.number(part.part)];
         std::span<const Contact> of_part = part.contacts;
         if (of_part.size() > 1 && is_smooth(*touched.object->surface)) {
-            std::array<glm::dvec3, 2> way_m{}; // from the hand to the proxy, of the tip and the tail
+            Shaft way_m; // from the hand to the proxy
             for (const Contact& contact : contacts)
-                if (!contact.by_shaft) way_m[contact.along > 0] += contact.depth_m * contact.normal;
-            if (body.objects.joined)
-                for (glm::dvec3& way : way_m) way = body.placement_of(*touched.object).direction_to_object(way);
+                way_m += contact.depth_m * Shaft::pushed_at(contact.along, contact.normal);
+            if (body.objects.joined) way_m = in_object(body.placement_of(*touched.object), way_m);
             of_part = smooth_rows_.of(*touched.object->surface, of_part, way_m, probe_.radius_m, touched.lines);
         }
         for (const Contact& contact : of_part.first(std::min(of_part.size(), rows_.size() - count)))
@@ -113,45 +106,66 @@ std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Con
     return {rows_.data(), count};
 }
 
-// Of one end of the probe.
-Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> rows, bool tail) const noexcept
+Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> rows, Held where) const noexcept
 {
     HeldTogether held;
     const auto placement_of = [&](const Row& row) -> const Placement& {
         return body.placement_of(*objects_[body.objects.number(row.part)].object);
     };
     for (Row& row : rows) {
-        if (!is_held_at(row.contact, tail)) continue;
-        held.way_m += placement_of(row).direction_to_world(row.contact.depth_m * row.contact.normal);
+        const bool elsewhere = where != Held::anywhere && (row.contact.along > 0) != (where == Held::at_tail);
+        if (elsewhere || row.contact.unsettled || !(row.contact.depth_m > 0)) continue;
+        row.normal = placement_of(row).direction_to_world(row.contact.normal);
+        row.direction = Shaft::pushed_at(row.contact.along, row.normal);
+        held.way_m += row.contact.depth_m * row.direction;
         held.row[held.count++] = &row;
     }
-    const double way_m = glm::length(held.way_m);
-    if (held.count < 2 || !(way_m > 0)) return {};
+    if (held.count < 2 || !(length(held.way_m) > 0)) return {};
+    for (Row* row : held.rows()) row->share = share_of(row->contact, row->normal, held.way_m.at(row->contact.along));
+    hold_still(held);
     for (Row* row : held.rows()) {
-        row->normal = placement_of(*row).direction_to_world(row->contact.normal);
-        row->share = share_of(row->contact, placement_of(*row).direction_to_object(held.way_m));
+        glm::dvec3 moved_m(0);
+        for (const Row* other : held.rows())
+            if (other != row) moved_m += (other->still_m - other->contact.depth_m) * other->moves(*row);
+        row->contact.proxy_m += placement_of(*row).direction_to_object(moved_m);
     }
-    for (Row* row : held.rows()) row->held = Rise(row->contact.depth_m / (holds_still * way_m)).value;
+    return held;
+}
+
+// In how far each row does, and how that changes with the hand's place. What all others leave of a row's direction,
+// each in so far as it holds, is (1 + sum of d d^T / loose)^-1 times that, without its own: by rank-one updates.
+void Renderer::hold_still(const HeldTogether& held) noexcept
+{
+    const double way_m = length(held.way_m);
+    std::array<Shaft, CreaseRows::rows_most> left;
+    std::array<double, CreaseRows::rows_most> stays;
+    std::size_t count = 0;
+    const auto left_of = [&](const Shaft& direction) {
+        Shaft rest = direction;
+        for (std::size_t i = 0; i < count; ++i) rest -= dot(left[i], direction) / stays[i] * left[i];
+        return rest;
+    };
+    const auto loose = [](const Row& row) { return one_direction + (1 / row.held - 1); };
     for (Row* row : held.rows()) {
-        const glm::dvec3 left = left_by_others(*row, held.rows());
-        const double alone = glm::dot(row->normal, left);
-        const glm::dvec3 depth_dp = -left / alone;
+        row->held = Rise(row->contact.depth_m / (holds_still * way_m)).value;
+        if (row->held == 0) continue;
+        left[count] = left_of(row->direction);
+        stays[count] = dot(row->direction, left[count]) + loose(*row);
+        ++count;
+    }
+    for (Row* row : held.rows()) {
+        Shaft alone = left_of(row->direction); // by the others
+        if (row->held > 0) alone = loose(*row) / (loose(*row) - dot(row->direction, alone)) * alone;
+        const double square = dot(row->direction, alone);
+        const Shaft depth_dp = -1 / square * alone;
         const double depth_m = row->contact.depth_m, q = depth_m / (holds_still * way_m);
         const Rise rise(q);
         row->still_m = depth_m * rise.value;
         row->still_dp =
             holds_still * q * q * rise.slope / way_m * held.way_m + (rise.value + q * rise.slope) * depth_dp;
-        row->off_m = std::sqrt(alone) * depth_m;
-        row->off_dp = std::sqrt(alone) * depth_dp;
+        row->off_m = std::sqrt(square) * depth_m;
+        row->off_dp = std::sqrt(square) * depth_dp;
     }
-    for (Row* row : held.rows()) {
-        glm::dvec3 moved_m(0);
-        for (const Row* other : held.rows())
-            if (other != row)
-                moved_m += (other->still_m - other->contact.depth_m) * tangential(other->normal, row->normal);
-        row->contact.proxy_m += placement_of(*row).direction_to_object(moved_m);
-    }
-    return held;
 }
 
 // By how much what is felt on a row is above its facet, mostly less than 0, and how that changes with the hand's place.
@@ -162,9 +176,9 @@ void Renderer::raise(Row& row, const HeldTogether& held) noexcept
                  felt_m = stiffness > 0 ? std::sqrt(2 * force.surface_j / stiffness) : 0.0;
     row.raised_m = felt_m > 0 ? felt_m - row.whole().depth_m : force.raised_m;
     const glm::dvec3 below_dp = felt_m > 0 ? row.normal - force.spring_n / (stiffness * felt_m) : force.raised_dp;
-    row.raised_dp = below_dp;
+    row.raised_dp = Shaft::pushed_at(row.contact.along, below_dp);
     for (const Row* other : held.rows())
-        if (other != &row) row.raised_dp += glm::dot(below_dp, tangential(other->normal, row.normal)) * other->still_dp;
+        if (other != &row) row.raised_dp += glm::dot(below_dp, other->moves(row)) * other->still_dp;
     if (!(row.raised_m < 0)) return;
     const double left = std::max(0.0, 1 + row.off_m / row.raised_m);
     row.on_m = -row.raised_m * (1 - left * left);
@@ -177,7 +191,7 @@ void Renderer::raise(Row& row, const HeldTogether& held) noexcept
 void Renderer::ease_in(const HeldTogether& held) noexcept
 {
     double all_m = 0;
-    glm::dvec3 all_dp(0);
+    Shaft all_dp;
     for (const Row* row : held.rows()) {
         all_m += row->on_m;
         all_dp += row->on_dp;
@@ -186,7 +200,7 @@ void Renderer::ease_in(const HeldTogether& held) noexcept
         const double others_m = all_m - row->on_m + row->raised_m,
                      left = others_m > 0 ? 1 - row->off_m / (5 * others_m) : 0;
         if (left <= 0) continue;
-        const glm::dvec3 others_dp = all_dp - row->on_dp + row->raised_dp;
+        const Shaft others_dp = all_dp - row->on_dp + row->raised_dp;
         row->raised_m -= others_m * left * left;
         row->raised_dp -= (left * left + 2 * (1 - left) * left) * others_dp - 0.4 * left * row->off_dp;
     }
@@ -194,9 +208,9 @@ void Renderer::ease_in(const HeldTogether& held) noexcept
 
 void Renderer::push_together(const HeldTogether& held) noexcept
 {
-    const double way_m = glm::length(held.way_m);
+    const double way_m = length(held.way_m);
     const auto is_facet = [&](const Row* row) {
-        return std::fabs(row->raised_m) <= exact_within * way_m && glm::length(row->raised_dp) <= exact_within;
+        return std::fabs(row->raised_m) <= exact_within * way_m && length(row->raised_dp) <= exact_within;
     };
     for (Row* row : held.rows()) raise(*row, held);
     if (std::ranges::all_of(held.rows(), is_facet)) return;
@@ -204,25 +218,30 @@ void Renderer::push_together(const HeldTogether& held) noexcept
     std::array<ShaftRow, CreaseRows::rows_most> planes;
     for (std::size_t i = 0; i < held.count; ++i) {
         const Row& row = *held.row[i];
-        planes[i] = {row.normal, glm::dot(row.normal, held.way_m) + row.raised_m, 0};
+        planes[i] = {row.normal, dot(row.direction, held.way_m) + row.raised_m, row.contact.along};
     }
     const Projection<Shaft> at =
         project(std::span<const ShaftRow>(planes.data(), held.count), {}, exact_within * way_m);
     double pushes_m = 0;
     for (std::size_t i = 0; i < at.count; ++i) pushes_m += at.push[i];
-    const double told = std::min(1.0, opposed_most * glm::length(at.at.tip) / pushes_m);
+    const double told = std::min(1.0, opposed_most * length(at.at) / pushes_m);
     for (std::size_t i = 0; i < held.count; ++i) {
         Row& row = *held.row[i];
+        const double along = row.contact.along;
         const auto active = std::find(at.active.begin(), at.active.begin() + at.count, i);
         const double push_m = active == at.active.begin() + at.count
                                   ? 0.0
                                   : at.push[static_cast<std::size_t>(active - at.active.begin())];
         ObjectForce& force = row.force;
-        const glm::dvec3 spring_n = force.felt_n_per_m * push_m * (row.normal - row.raised_dp),
-                         more_n = told * (spring_n - row.share * force.spring_n);
-        force.force_n += more_n;
-        const double along_n = glm::dot(force.force_n, force.normal);
-        if (along_n < 0) force.force_n -= std::max(along_n, -glm::length(more_n)) * force.normal; // never pulls
+        const Shaft more_n = told * (force.felt_n_per_m * push_m * (row.direction - row.raised_dp) -
+                                     Shaft::pushed_at(along, row.share * force.spring_n));
+        // What is of its own place, and what others that hold it still make of it at the other end.
+        const glm::dvec3 own_n = row.contact.by_shaft ? glm::dvec3(0) : along > 0 ? more_n.tail : more_n.tip;
+        row.at_ends_n = more_n - Shaft::pushed_at(along, own_n);
+        force.force_n += own_n;
+        const glm::dvec3 all_n = row.contact.by_shaft ? force.force_n + more_n.tip + more_n.tail : force.force_n;
+        const double along_n = glm::dot(all_n, force.normal);
+        if (along_n < 0) force.force_n -= std::max(along_n, -length(more_n)) * force.normal; // never pulls
     }
 }
 

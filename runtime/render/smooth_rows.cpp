@@ -44,9 +44,8 @@ void add(Contact& row, const Contact& contact, double held_above_m)
 
 } // namespace
 
-std::span<const Contact> SmoothRows::of(const Surface& surface, std::span<const Contact> contacts,
-                                        const std::array<glm::dvec3, 2>& way_m, double held_above_m,
-                                        FacetLines& lines) noexcept
+std::span<const Contact> SmoothRows::of(const Surface& surface, std::span<const Contact> contacts, const Shaft& way_m,
+                                        double held_above_m, FacetLines& lines) noexcept
 {
     std::array<Foot, CreaseRows::rows_most> feet;
     // The first at each end: a point that is held as a ball touches all of them a little apart.
@@ -59,7 +58,7 @@ std::span<const Contact> SmoothRows::of(const Surface& surface, std::span<const 
             const Contact*& end = first[contact.along > 0];
             if (!end) end = &contact;
             const glm::dvec3 centre_m = end->proxy_m + held_above_m * end->normal;
-            foot = smooth_foot(surface, contact, centre_m - way_m[contact.along > 0], held_above_m, lines);
+            foot = smooth_foot(surface, contact, centre_m - way_m.at(contact.along), held_above_m, lines);
         }
         std::size_t same = 0;
         while (same < count && !(rows_[same].along == contact.along && are_one(feet[same], foot))) ++same;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "runtime/contact/crease_rows.h"
+#include "runtime/contact/project.h"
 #include "runtime/force/foot.h"
 
 #include <array>
@@ -15,11 +16,10 @@ namespace haptel::runtime {
 
 class SmoothRows {
 public:
-    // Of one object, in its space. `way_m`: from the hand to the proxy by all that holds the end of the probe at which
-    // a contact is, at its tip and at its tail. Valid until the next call.
-    std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts,
-                                const std::array<glm::dvec3, 2>& way_m, double held_above_m,
-                                FacetLines& lines) noexcept;
+    // Of one object, in its space. `way_m`: from the hand to the proxy by all that holds the probe. Valid until the
+    // next call.
+    std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts, const Shaft& way_m,
+                                double held_above_m, FacetLines& lines) noexcept;
 
 private:
     std::array<Contact, CreaseRows::rows_most> rows_;
