@@ -178,6 +178,54 @@ TEST_CASE("on a ball of 5 120 triangles the force is that of the ball")
     }
 }
 
+TEST_CASE("on a ball of 5 120 triangles the force is minus the gradient of the work that pressing in took")
+{
+    const TextureBinding waves = lambda_texture(
+        [](const haptel_point& at, dvec3& gradient) {
+            gradient = 25e-6 * 2000 * std::cos(2000 * at.p[0]) * dvec3(1, 0, 0);
+            return 25e-6 * std::sin(2000 * at.p[0]);
+        },
+        -25e-6, 25e-6, HAPTEL_READS_POINT);
+    for (const TextureBinding& texture : {TextureBinding(), waves})
+        for (const double radius_m : {0.0, 2.5e-3}) {
+            Scene scene = bare_scene(ball_mesh(4, size_m), texture);
+            scene.probe = {radius_m > 0 ? ProbeKind::sphere : ProbeKind::point, 0.15, radius_m};
+            const auto touched = shared(std::move(scene));
+            // Straight in from outside, toward the middle.
+            const auto pressed = [&](const dvec3& hand_m) {
+                constexpr int steps = 4000;
+                Renderer renderer(touched);
+                const dvec3 from_m = (ball_m + radius_m + 1e-5) * glm::normalize(hand_m),
+                            step_m = (hand_m - from_m) / double(steps);
+                renderer.tick({from_m, from_m});
+                dvec3 force_n(0);
+                double work_j = 0;
+                for (int i = 1; i <= steps; ++i) {
+                    const dvec3 at_m = from_m + double(i) * step_m, before_n = force_n;
+                    force_n = renderer.tick({at_m, at_m}).force_n;
+                    work_j -= glm::dot(0.5 * (before_n + force_n), step_m);
+                }
+                return std::pair(work_j, force_n);
+            };
+            std::mt19937_64 random(11);
+            std::normal_distribution<double> normal;
+            std::uniform_real_distribution<double> uniform(0.2e-3, 5e-3);
+            for (int i = 0; i < tries(30); ++i) {
+                const dvec3 d(normal(random), normal(random), normal(random));
+                const dvec3 hand_m = (ball_m + radius_m - uniform(random)) * glm::normalize(d);
+                dvec3 gradient;
+                for (int j = 0; j < 3; ++j) {
+                    dvec3 step(0);
+                    step[j] = 2e-6;
+                    gradient[j] = (pressed(hand_m + step).first - pressed(hand_m - step).first) / 4e-6;
+                }
+                const dvec3 force_n = pressed(hand_m).second;
+                CAPTURE(radius_m, i, glm::length(force_n));
+                CHECK(glm::distance(force_n, -gradient) < 1e-4 * glm::length(force_n));
+            }
+        }
+}
+
 TEST_CASE("from the first touch on, the force of a ball of triangles turns as a ball's")
 {
     for (const uint32_t subdivisions : {2u, 3u, 4u}) {
