@@ -164,8 +164,11 @@ private:
         Shaft at_ends_n{}; // felt there besides `force`
         ObjectForce force{};
 
-        // How a push of this one moves the place of another, along what is touched there.
-        glm::dvec3 moves(const Row& other) const { return tangential(direction.at(other.contact.along), other.normal); }
+        // Along what another one touches, of the place where it does: how that goes by a push of this one.
+        glm::dvec3 way_of(const Row& other) const
+        {
+            return tangential(direction.at(other.contact.along), other.normal);
+        }
         Contact whole() const // as if it held all of it
         {
             Contact all = contact;
@@ -174,7 +177,7 @@ private:
             return all;
         }
     };
-    // At one end of the probe, or of all of it where its shaft touches.
+    // At one end of the probe; of a stylus anywhere.
     struct HeldTogether {
         std::array<Row*, CreaseRows::rows_most> row;
         std::size_t count = 0;

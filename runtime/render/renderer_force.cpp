@@ -95,7 +95,9 @@ Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material&
     result.felt_n_per_m = stiffness;
     result.spring_n = stiffness * contact.depth_m * result.normal;
     result.force_n = result.spring_n + damping * result.normal;
-    result.surface_j = result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
+    result.surface_j = stiffness * contact.depth_m * contact.depth_m / 2;
+    const glm::dvec2 ends(1 - contact.along, contact.along); // its depth is its push, by which both give way
+    result.held_j = glm::dot(ends, ends) * result.surface_j;
     return result;
 }
 

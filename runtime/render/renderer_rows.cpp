@@ -13,8 +13,8 @@
 //
 // h_i is looked up straight below the place to which the others push the hand, and so it stays where they hold it: of
 // what holds little, little, so that nothing steps where a contact begins. The gradient counts all that changes with
-// the hand but the turning of n_i where a ball rests on an edge. What that leaves on closed paths is measured in
-// tests/runtime/force/closed_paths.cpp.
+// the hand but the turning of n_i, where a ball rests on an edge and with the shaft of a stylus. What that leaves on
+// closed paths is measured in tests/runtime/force/closed_paths.cpp.
 //
 // Friction and damping are felt by shares: of each contact as if it held all of the hand, times what it holds.
 #include "runtime/render/renderer.h"
@@ -35,8 +35,8 @@ constexpr double exact_within = 1e-9; // of the way from the hand to the proxy
 // still. With five times as much closed paths in smooth valleys give ten times as much.
 constexpr double holds_still = 0.05;
 
-// Squared sine of the angle within which facets count as of one direction, 6 degrees: what holds goes over from one to
-// the other on so short a way that the force would step.
+// Squared sine of the angle within which facets count as of one direction, 6 degrees (up to 8 of a shaft): what holds
+// goes over from one to the other on so short a way that the force would step.
 constexpr double one_direction = 0.01;
 
 // What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
@@ -67,10 +67,9 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
         return;
     }
     const std::span<Row> rows = rows_of(body, contacts, parts);
-    const bool by_shaft =
-        std::ranges::any_of(contacts, [](const Contact& contact) { return contact.by_shaft && !contact.unsettled; });
-    const std::array held{held_together(body, rows, by_shaft ? Held::anywhere : Held::at_tip),
-                          by_shaft ? HeldTogether() : held_together(body, rows, Held::at_tail)};
+    const bool one = probe_.kind == ProbeKind::stylus; // else each end by itself
+    const std::array held{held_together(body, rows, one ? Held::anywhere : Held::at_tip),
+                          one ? HeldTogether() : held_together(body, rows, Held::at_tail)};
     for (Row& row : rows) {
         Touched& touched = objects_[body.objects.number(row.part)];
         if (row.is_first) swing_on(touched);
@@ -126,38 +125,38 @@ Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> 
     for (Row* row : held.rows()) {
         glm::dvec3 moved_m(0);
         for (const Row* other : held.rows())
-            if (other != row) moved_m += (other->still_m - other->contact.depth_m) * other->moves(*row);
+            if (other != row) moved_m += (other->still_m - other->contact.depth_m) * other->way_of(*row);
         row->contact.proxy_m += placement_of(*row).direction_to_object(moved_m);
     }
     return held;
 }
 
-// In how far each row does, and how that changes with the hand's place. What all others leave of a row's direction,
-// each in so far as it holds, is (1 + sum of d d^T / loose)^-1 times that, without its own: by rank-one updates.
+// In how far each row does, and how that changes with the hand's place. What all others leave of a row's direction d,
+// each in so far as it holds, is (1 + sum of gain d d^T)^-1 d over the others: of the sum over all rows, by rank-one
+// updates, the row's own part is taken back.
 void Renderer::hold_still(const HeldTogether& held) noexcept
 {
     const double way_m = length(held.way_m);
-    std::array<Shaft, CreaseRows::rows_most> left;
-    std::array<double, CreaseRows::rows_most> stays;
+    std::array<Shaft, CreaseRows::rows_most> update;
+    std::array<double, CreaseRows::rows_most> weight;
     std::size_t count = 0;
-    const auto left_of = [&](const Shaft& direction) {
+    const auto rest_of = [&](const Shaft& direction) {
         Shaft rest = direction;
-        for (std::size_t i = 0; i < count; ++i) rest -= dot(left[i], direction) / stays[i] * left[i];
+        for (std::size_t i = 0; i < count; ++i) rest -= weight[i] * dot(update[i], direction) * update[i];
         return rest;
     };
-    const auto loose = [](const Row& row) { return one_direction + (1 / row.held - 1); };
+    const auto gain = [](const Row& row) { return row.held / (1 - (1 - one_direction) * row.held); };
     for (Row* row : held.rows()) {
         row->held = Rise(row->contact.depth_m / (holds_still * way_m)).value;
-        if (row->held == 0) continue;
-        left[count] = left_of(row->direction);
-        stays[count] = dot(row->direction, left[count]) + loose(*row);
+        update[count] = rest_of(row->direction);
+        weight[count] = gain(*row) / (1 + gain(*row) * dot(row->direction, update[count]));
         ++count;
     }
     for (Row* row : held.rows()) {
-        Shaft alone = left_of(row->direction); // by the others
-        if (row->held > 0) alone = loose(*row) / (loose(*row) - dot(row->direction, alone)) * alone;
-        const double square = dot(row->direction, alone);
-        const Shaft depth_dp = -1 / square * alone;
+        const Shaft rest = rest_of(row->direction),
+                    left = 1 / (1 - gain(*row) * dot(row->direction, rest)) * rest; // by the others
+        const double square = dot(row->direction, left);
+        const Shaft depth_dp = -1 / square * left;
         const double depth_m = row->contact.depth_m, q = depth_m / (holds_still * way_m);
         const Rise rise(q);
         row->still_m = depth_m * rise.value;
@@ -178,7 +177,7 @@ void Renderer::raise(Row& row, const HeldTogether& held) noexcept
     const glm::dvec3 below_dp = felt_m > 0 ? row.normal - force.spring_n / (stiffness * felt_m) : force.raised_dp;
     row.raised_dp = Shaft::pushed_at(row.contact.along, below_dp);
     for (const Row* other : held.rows())
-        if (other != &row) row.raised_dp += glm::dot(below_dp, other->moves(row)) * other->still_dp;
+        if (other != &row) row.raised_dp += glm::dot(below_dp, other->way_of(row)) * other->still_dp;
     if (!(row.raised_m < 0)) return;
     const double left = std::max(0.0, 1 + row.off_m / row.raised_m);
     row.on_m = -row.raised_m * (1 - left * left);
@@ -187,20 +186,23 @@ void Renderer::raise(Row& row, const HeldTogether& held) noexcept
 
 // Where the others are lower than this row is, the probe may come to it before contact does: up to five times as deep
 // as they are it is lower, too, so that it begins without a step, and its force grows at most by 0.4 faster than its
-// depth.
+// depth. One end of a stylus comes to it by the other in so far as the shaft holds.
 void Renderer::ease_in(const HeldTogether& held) noexcept
 {
-    double all_m = 0;
-    Shaft all_dp;
-    for (const Row* row : held.rows()) {
-        all_m += row->on_m;
-        all_dp += row->on_dp;
-    }
+    double turns = 0;
+    for (const Row* row : held.rows())
+        if (row->contact.by_shaft) turns = std::max(turns, row->held);
     for (Row* row : held.rows()) {
-        const double others_m = all_m - row->on_m + row->raised_m,
-                     left = others_m > 0 ? 1 - row->off_m / (5 * others_m) : 0;
+        double others_m = row->raised_m;
+        Shaft others_dp = row->raised_dp;
+        for (const Row* other : held.rows()) {
+            if (other == row) continue;
+            const double comes = std::fabs(other->contact.along - row->contact.along) == 1 ? turns : 1.0;
+            others_m += comes * other->on_m;
+            others_dp += comes * other->on_dp;
+        }
+        const double left = others_m > 0 ? 1 - row->off_m / (5 * others_m) : 0;
         if (left <= 0) continue;
-        const Shaft others_dp = all_dp - row->on_dp + row->raised_dp;
         row->raised_m -= others_m * left * left;
         row->raised_dp -= (left * left + 2 * (1 - left) * left) * others_dp - 0.4 * left * row->off_dp;
     }
@@ -235,13 +237,12 @@ void Renderer::push_together(const HeldTogether& held) noexcept
         ObjectForce& force = row.force;
         const Shaft more_n = told * (force.felt_n_per_m * push_m * (row.direction - row.raised_dp) -
                                      Shaft::pushed_at(along, row.share * force.spring_n));
-        // What is of its own place, and what others that hold it still make of it at the other end.
-        const glm::dvec3 own_n = row.contact.by_shaft ? glm::dvec3(0) : along > 0 ? more_n.tail : more_n.tip;
-        row.at_ends_n = more_n - Shaft::pushed_at(along, own_n);
-        force.force_n += own_n;
-        const glm::dvec3 all_n = row.contact.by_shaft ? force.force_n + more_n.tip + more_n.tail : force.force_n;
-        const double along_n = glm::dot(all_n, force.normal);
-        if (along_n < 0) force.force_n -= std::max(along_n, -length(more_n)) * force.normal; // never pulls
+        row.at_ends_n = more_n;
+        const glm::dvec3 here_n = row.contact.by_shaft ? more_n.tip + more_n.tail
+                                  : along > 0          ? more_n.tail
+                                                       : more_n.tip;
+        const double along_n = glm::dot(force.force_n + here_n, force.normal);
+        if (along_n < 0) force.force_n -= std::max(along_n, -glm::length(here_n)) * force.normal; // never pulls
     }
 }
 

@@ -88,33 +88,46 @@ struct Work {
     bool steps = false; // the force, by more than a thousandth of what presses and 50 times as fast as that does
 };
 
-// On the second time round: what contact remembers has settled.
+// On the second time round: what contact remembers has settled. A stylus turns a little on its way.
 Work work_once_round(const std::shared_ptr<const Scene>& scene, const Path& path, int steps)
 {
     Renderer renderer(scene);
     const double above_m = scene->probe.radius_m + 0.05 * across_m;
-    const auto pose = [&](const dvec3& p) {
-        DevicePose held{p, p};
-        if (scene->probe.has_tail()) held.tail_m = p + 0.1 * path.normal;
+    const auto pose = [&](const dvec3& tip_m, double turns) {
+        DevicePose held{tip_m, tip_m};
+        if (!scene->probe.has_tail()) return held;
+        const double a = 2 * std::numbers::pi * turns;
+        held.tail_m += 0.1 * glm::normalize(path.normal + 0.01 * std::sin(2 * a) * path.along +
+                                            0.015 * std::cos(3 * a) * path.across);
         return held;
     };
-    renderer.tick(pose(path.from + above_m * path.normal));
+    renderer.tick(pose(path.from + above_m * path.normal, 0));
     Work work;
     double least_j = 0, most_j = 0;
-    dvec3 before_m(0), before_n(0);
+    DevicePose before;
+    TickResult felt;
     for (int i = 0; i <= 2 * steps; ++i) {
-        const dvec3 at_m = path.at(static_cast<double>(i) / steps) + scene->probe.radius_m * path.normal;
-        const TickResult tick = renderer.tick(pose(at_m));
+        const double turns = static_cast<double>(i) / steps;
+        const DevicePose held = pose(path.at(turns) + scene->probe.radius_m * path.normal, turns);
+        const TickResult tick = renderer.tick(held);
         if (i > steps) {
-            work.given_j += glm::dot(0.5 * (tick.force_n + before_n), at_m - before_m);
+            const dvec3 from_m = before.tail_m - before.tip_m, to_m = held.tail_m - held.tip_m,
+                        way_m = held.tip_m - before.tip_m;
+            dvec3 turned_rad(0);
+            if (scene->probe.has_tail()) turned_rad = glm::cross(from_m, to_m) / glm::dot(from_m, from_m);
+            // The grip is the tail.
+            const dvec3 grip_m = scene->probe.has_tail() ? held.tail_m - before.tail_m : way_m;
+            work.given_j += 0.5 * (glm::dot(felt.force_n + tick.force_n, grip_m) +
+                                   glm::dot(felt.torque_n_m + tick.torque_n_m, turned_rad));
             least_j = std::min(least_j, work.given_j);
             most_j = std::max(most_j, work.given_j);
-            const double step_n = glm::distance(tick.force_n, before_n);
-            work.steps |= step_n > spring_n_per_m * std::max(50 * glm::distance(at_m, before_m), 1e-3 * work.deepest_m);
+            const double step_n = glm::distance(tick.force_n, felt.force_n),
+                         hand_m = std::max(glm::length(way_m), glm::length(grip_m));
+            work.steps |= step_n > spring_n_per_m * std::max(50 * hand_m, 1e-3 * work.deepest_m);
         }
         work.deepest_m = std::max(work.deepest_m, tick.depth_m);
-        before_m = at_m;
-        before_n = tick.force_n;
+        before = held;
+        felt = tick;
     }
     work.pressed_j = std::max(0.5 * spring_n_per_m * work.deepest_m * work.deepest_m, most_j - least_j);
     return work;
@@ -200,7 +213,7 @@ TEST_CASE("in hollow balls not much wider than a ball with a texture closed path
     }
 }
 
-TEST_CASE("across the hole of a ring a stylus on its tip and its shaft gives less than a thousandth on closed paths")
+TEST_CASE("across the hole of a ring a stylus on its tip and its shaft gives less than a hundredth on closed paths")
 {
     // Both hold it together: where a texture lets the tip go deeper, the shaft turns about where it rests.
     for (const double texture_m : {0.0, 50e-6}) {
@@ -219,7 +232,7 @@ TEST_CASE("across the hole of a ring a stylus on its tip and its shaft gives les
             path.swing_m = 0.5 * path.depth_m;
             CAPTURE(texture_m, i, path.width_m, path.depth_m);
             const Work work = work_once_round(touched, path, 20'000);
-            CHECK(std::fabs(work.given_j) < 1e-3 * work.pressed_j);
+            CHECK(std::fabs(work.given_j) < 1e-2 * work.pressed_j);
             ++i;
         }
     }
@@ -323,7 +336,7 @@ Settled share_settled(const std::shared_ptr<const Scene>& scene, const Path& pat
         if (!(work.deepest_m > 0 && work.deepest_m < 0.1 * across_m)) return {};
         const double share = work.given_j / work.pressed_j;
         settled = std::fabs(share - before) < 0.1 * std::fabs(share) ? settled + 1 : 0;
-        if (std::fabs(share) < enough || (settled >= 2 && steps > 100'000) || steps > 5'000'000)
+        if (std::fabs(share) < enough || ((settled >= 2 || work.steps) && steps > 100'000) || steps > 5'000'000)
             return {share, true, std::fabs(share) >= enough && work.steps};
         before = share;
     }
