@@ -13,7 +13,8 @@ ModelForce model_force(const ForceRule& rule, const Foot& foot, double stiffness
     if (rule.model == ForceModel::displaced) {
         const double depth = std::max(0.0, foot.depth_m + texture.envelope_m);
         if (depth == 0) return {};
-        return {stiffness * depth * (foot.push - foot.felt(texture.gradient)), depth};
+        const glm::dvec3 slope = texture.gradient == glm::dvec3(0) ? glm::dvec3(0) : foot.felt(texture.gradient);
+        return {stiffness * depth * (foot.push - slope), depth};
     }
     const glm::dvec3& normal = foot.normal;
     const glm::dvec3 gradient = tangential(texture.gradient, normal);

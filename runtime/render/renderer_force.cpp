@@ -68,6 +68,7 @@ glm::dvec3 Renderer::hand_m_per_s(const Body& body, const Placement& placement, 
 void Renderer::swing_on(Touched& touched) noexcept
 {
     const uint64_t periods = texture_period_ - std::exchange(touched.swung_period, texture_period_);
+    if (touched.swing_hz == 0) return;
     touched.swing_turns =
         std::remainder(touched.swing_turns + touched.swing_hz * static_cast<double>(periods) * period_s_, 1.0);
 }
