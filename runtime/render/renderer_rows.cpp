@@ -13,9 +13,9 @@
 //
 // h_i is looked up straight below the place to which the others push the hand, and so it stays where they hold it: of
 // what holds little, little, so that nothing steps where a contact begins. The gradient counts all that changes with
-// the hand but how n_i turns, where a ball rests on an edge and with the shaft of a stylus, and how it steps: facets
-// stand for the smooth surface here, and contact goes from one to the next at once. That is what is left on closed
-// paths (tests/runtime/force/closed_paths.cpp); counting the turning alone changes it by less than a tenth.
+// the hand but how n_i turns, where a ball rests on an edge and with the shaft of a stylus, and how it steps from facet
+// to facet of a smooth surface. Between walls that are nearer to each other than a right angle h_i is looked up below
+// where the hand is. That is what is left on closed paths (tests/runtime/force/closed_paths.cpp).
 //
 // Friction and damping are felt by shares: of each contact as if it held all of the hand, times what it holds.
 #include "runtime/render/renderer.h"
