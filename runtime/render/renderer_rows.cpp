@@ -6,7 +6,7 @@
 //   n_i . X >= d_i + h_i,
 //
 // d_i how deep the hand is below facet i, h_i <= 0 by how much lower than it the texture and the smooth surface are.
-// Where the shaft of a stylus touches, too, X is the way of both its ends, and n_i . X that of the place which touches.
+// Of a stylus X is the way of both its ends, and n_i . X that of the place which touches.
 // What all push together is minus the gradient of |X|^2 / 2: with the push p_i of each, how much of X is along n_i,
 //
 //   sum of p_i (n_i - grad h_i).
@@ -68,9 +68,9 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
         return;
     }
     const std::span<Row> rows = rows_of(body, contacts, parts);
-    const bool one = probe_.kind == ProbeKind::stylus; // else each end by itself
-    const std::array held{held_together(body, rows, one ? Held::anywhere : Held::at_tip),
-                          one ? HeldTogether() : held_together(body, rows, Held::at_tail)};
+    const bool stylus = probe_.kind == ProbeKind::stylus; // of the others each end by itself
+    const std::array held{held_together(body, rows, stylus ? Held::anywhere : Held::at_tip),
+                          stylus ? HeldTogether() : held_together(body, rows, Held::at_tail)};
     for (Row& row : rows) {
         Touched& touched = objects_[body.objects.number(row.part)];
         if (row.is_first) swing_on(touched);
