@@ -64,9 +64,9 @@ public:
         written.push_back(next);
         for (const Value operand : makers[next.index]->operands) {
             if (constant_of(makers[operand.index])) continue;
-            const auto known = std::ranges::find(met, operand, &Met::value);
-            if (known != met.end())
-                ++known->times;
+            const auto before = std::ranges::find(met, operand, &Met::value);
+            if (before != met.end())
+                ++before->times;
             else
                 met.push_back({operand});
         }
