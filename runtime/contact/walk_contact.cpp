@@ -34,20 +34,17 @@ void WalkContact::reset() noexcept
 void WalkContact::tick(const glm::dvec3& hand_m, const Friction& friction) noexcept
 {
     if (!take(hand_m)) return;
-    slide_on(surface_->lattice.metres(hand_) - contact_.hand_m, friction);
+    const WalkFriction coulomb = checked(friction);
+    proxy_.sliding = proxy_.sliding && contact_.touching &&
+                     slides_on({&contact_, 1}, surface_->lattice.metres(hand_) - contact_.hand_m, coulomb);
     if (placed_ && !proxy_.touches()) {
         move_freely(hand_);
     } else if (!placed_) {
         placed_ = true;
         proxy_.at = hand_;
     }
-    if (proxy_.touches()) walk(*surface_, proxy_, hand_, checked(friction), counters_);
+    if (proxy_.touches()) walk(*surface_, proxy_, hand_, coulomb, counters_);
     describe();
-}
-
-void WalkContact::slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept
-{
-    proxy_.sliding = proxy_.sliding && contact_.touching && slides_on({&contact_, 1}, way_m, checked(friction));
 }
 
 void WalkContact::follow(const glm::dvec3& hand_m) noexcept

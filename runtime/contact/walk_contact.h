@@ -43,7 +43,6 @@ public:
 private:
     bool take(const glm::dvec3& hand_m) noexcept;
     void move_freely(const glm::dvec3& hand) noexcept;
-    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept;
     void describe() noexcept;
 
     std::shared_ptr<const Surface> surface_;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace haptel::runtime {
 
@@ -31,10 +32,10 @@ constexpr double one_plane = 1e-6;
 // Above the centres of curvature the foot is mostly nearer to the flat one than half an edge.
 constexpr int facets_most = 8;
 
-// Chebyshev's steps make the digits three times as many: after one below this the next is less than 1e-12. Far away,
-// where they would overshoot, they are Newton's.
+// Steps are Chebyshev's until what one leaves is less than so much of an edge. Far away, where they would overshoot,
+// they are Newton's.
 constexpr int steps_most = 8;
-constexpr double step_settled = 1e-4, bends_most = 0.25, on_edge = 1e-10;
+constexpr double settled_within = 1e-12, bends_most = 0.25, on_edge = 1e-10;
 
 // The line through the hand, t of its normal below its point.
 struct OnLine {
@@ -58,7 +59,8 @@ bool find_line(const FacetLines& lines, const dvec3& hand_m, OnLine& at, Foot& f
         const double per = 1 / (c1 + t * (2 * c2 + t * 3 * c3)), more = per * (c0 + t * (c1 + t * (c2 + t * c3)));
         const double bends = more * per * (c2 + t * 3 * c3);
         t -= std::fabs(bends) < bends_most ? more + bends * more : more;
-        settled = std::fabs(more) < step_settled * lines.edge_m;
+        const double left = 2 * bends * bends + std::fabs(per * c3) * more * more; // of this step
+        settled = left * std::fabs(more) < settled_within * lines.edge_m;
     }
     at.t = t;
     at.per_m3 = 1 / (c1 + t * (2 * c2 + t * 3 * c3)); // at the line this is across . normal
@@ -223,7 +225,7 @@ bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand
     uint32_t face = contact.face, side = contact.side;
     OnLine at;
     for (int facet = 0; facet < facets_most; ++facet) {
-        if (face != lines.face || side != lines.side) lines = FacetLines(surface, face, side);
+        if (face != lines.face || side != lines.side) std::construct_at(&lines, surface, face, side);
         if (lines.flat && facet == 0 && contact.normal == contact.facet_normal && lines.sunk_m == dvec3(0)) {
             foot = flat_foot(surface, contact);
             return true;

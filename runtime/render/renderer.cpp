@@ -154,7 +154,8 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
             body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
         body.aim_m = glm::dvec3(0);
         if (effects_act) update_effects(body, contacts, parts);
-        body.tip_friction = body.tail_friction = {};
+        body.tip_friction = {};
+        body.tail_friction = {};
         if (contacts.empty()) {
             skipped.texture = skipped.texture && (scene_->servo.skips.texture || !feels_in_air(body, pose));
             if (sleeps(number, pose)) --i;

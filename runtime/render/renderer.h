@@ -241,6 +241,8 @@ private:
                                const Contact& contact) const noexcept;
     ObjectForce force_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,
                          const Contact& contact) noexcept;
+    TextureSample texture_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,
+                             const Contact& contact, double stiffness_n_per_m, const Shaded& read) noexcept;
     glm::dvec3 hand_m_per_s(const Body& body, const Placement& placement, const Contact& contact) const noexcept;
     void swing_on(Touched& touched) noexcept;
     double damping_n(const Body& body, double n_s_per_m, const Placement& placement, const Contact& contact,

@@ -14,6 +14,9 @@ namespace {
 
 constexpr double two_pi = 6.283185307179586;
 
+// Copied: what a compiler makes of its default values in place, zeros and the rest of each, waits for the memory.
+const TextureSample flat_sample;
+
 // From the finger at the tip to that at the tail.
 double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
 {
@@ -60,8 +63,9 @@ glm::dvec3 Renderer::hand_m_per_s(const Body& body, const Placement& placement, 
     const auto in_object = [&](const HandVelocity& own, const HandVelocity& world) {
         return body.motion ? own.m_per_s() : placement.direction_to_object(world.m_per_s());
     };
-    const glm::dvec3 tip = in_object(body.velocity, velocity_);
-    return contact.along > 0 ? tip + contact.along * (in_object(body.tail_velocity, tail_velocity_) - tip) : tip;
+    glm::dvec3 here = in_object(body.velocity, velocity_);
+    if (contact.along > 0) here += contact.along * (in_object(body.tail_velocity, tail_velocity_) - here);
+    return here;
 }
 
 // To this tick's phase of a vibration, whose frequency may change from tick to tick: no step in force.
@@ -78,9 +82,8 @@ double Renderer::damping_n(const Body& body, double n_s_per_m, const Placement& 
                            const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept
 {
     const glm::dvec3 velocity = hand_m_per_s(body, placement, contact);
-    const double scale = hand_.workspace.scale;
-    const double damping =
-        n_s_per_m / scale * -glm::dot(velocity, normal) * std::min(1.0, depth_m / (scale * full_damping_depth_m));
+    const double scale = hand_.workspace.scale, full_per_m = 1 / (scale * full_damping_depth_m);
+    const double damping = n_s_per_m / scale * -glm::dot(velocity, normal) * std::min(1.0, full_per_m * depth_m);
     return std::max(damping, -stiffness_n_per_m * depth_m);
 }
 
@@ -124,12 +127,10 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
         return {}; // the highest texture reaches up to the base and no further
     if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
     const Foot foot = foot_of(touched, contact);
+    if (foot.share == 1) return force_at(foot, body, touched, placement, contact);
     ObjectForce force = force_at(foot, body, touched, placement, contact);
-    if (foot.share < 1) {
-        const ObjectForce flat =
-            force_at(flat_foot(*touched.object->surface, contact), body, touched, placement, contact);
-        force.mix_in(flat, 1 - foot.share, -placement.direction_to_world(foot.share_dp));
-    }
+    const ObjectForce flat = force_at(flat_foot(*touched.object->surface, contact), body, touched, placement, contact);
+    force.mix_in(flat, 1 - foot.share, -placement.direction_to_world(foot.share_dp));
     return force;
 }
 
@@ -155,6 +156,25 @@ void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const
     unmapped |= other.unmapped;
 }
 
+TextureSample Renderer::texture_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,
+                                   const Contact& contact, double stiffness_n_per_m, const Shaded& read) noexcept
+{
+    SurfacePoint at{foot.at_m, {}, time_s()};
+    at.shading.normal = foot.normal;
+    if (read.normal_dp || read.uv)
+        at.shading = shade(*touched.object->surface, foot.face, foot.side, foot.barycentric, read);
+    if (contact.on_crease) {
+        at.shading.normal = contact.normal;
+        at.shading.normal_dp = glm::dmat3(0);
+    }
+    if (texture_reads(touched.texture) & HAPTEL_READS_VELOCITY)
+        at.velocity_m_per_s = tangential(hand_m_per_s(body, placement, contact), foot.normal);
+    at.normal_force_n = stiffness_n_per_m * contact.depth_m;
+    at.tool_radius_m = probe_.radius_m;
+    if (shares_.textures < 1) return mixed({}, sample_texture(touched.texture, at, touched.sample), shares_.textures);
+    return sample_texture(touched.texture, at, touched.sample);
+}
+
 Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Touched& touched,
                                          const Placement& placement, const Contact& contact) noexcept
 {
@@ -169,21 +189,9 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     const Shaded read{all || (reads & (HAPTEL_READS_NORMAL | HAPTEL_READS_CURVATURE)),
                       all || (reads & (HAPTEL_READS_UV | HAPTEL_READS_TANGENT))};
     result.unmapped = (turns && !read.normal_dp) || (drawn && !read.uv);
-    SurfacePoint at{foot.at_m, {}, time_s()};
-    at.shading.normal = foot.normal;
-    if (read.normal_dp || read.uv) at.shading = shade(surface, foot.face, foot.side, foot.barycentric, read);
-    if (contact.on_crease) {
-        at.shading.normal = contact.normal;
-        at.shading.normal_dp = glm::dmat3(0);
-    }
-
     const double stiffness = object.material.stiffness_n_per_m / scale;
-    if (reads & HAPTEL_READS_VELOCITY)
-        at.velocity_m_per_s = tangential(hand_m_per_s(body, placement, contact), foot.normal);
-    at.normal_force_n = stiffness * contact.depth_m;
-    at.tool_radius_m = probe_.radius_m;
-    TextureSample texture = textured ? sample_texture(touched.texture, at, touched.sample) : TextureSample();
-    if (shares_.textures < 1) texture = mixed({}, texture, shares_.textures);
+    const TextureSample texture =
+        textured ? texture_at(foot, body, touched, placement, contact, stiffness, read) : flat_sample;
     result.textured = textured;
     result.band_limited =
         textured && (touched.texture.from().binding.band_limited || touched.texture.to().binding.band_limited);
@@ -197,7 +205,7 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     const double below = contact.depth_m > 0 ? std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
     result.static_share = texture.static_friction_scale * below;
     result.dynamic_share = texture.dynamic_friction_scale * below;
-    result.grain = texture.grain;
+    if (texture.grain.is_there) result.grain = texture.grain;
     if (elastic.depth_m == 0) { // below the base surface, but not yet below the texture
         const bool displaced = force_rule_.model == ForceModel::displaced;
         result.raised_m = (displaced ? foot.depth_m + texture.envelope_m : 0) - contact.depth_m;

@@ -52,17 +52,20 @@ void Renderer::limit_and_send(TickResult& result, double lever_m, double left_wo
         return glm::length(of.n) <= small_n && glm::length(of.n_m) <= small_n * lever_m &&
                std::abs(of.grip_n) <= small_n;
     };
-    const OnHand computed{result.unlimited_force_n, result.unlimited_torque_n_m, result.grip_force_n};
     if (std::exchange(swapped_, false)) {
         rise_period_ = left_period_ = period_;
         left_ = interrupted_ ? OnHand() : sent_;
         left_work_j_ = left_work_max_j_ = 0;
-        waiting_ = waiting_ || (small_n > 0 && !small({computed.n - computed_.n, computed.n_m - computed_.n_m,
-                                                       computed.grip_n - computed_.grip_n}));
+        waiting_ =
+            waiting_ ||
+            (small_n > 0 && !small({result.unlimited_force_n - computed_.n, result.unlimited_torque_n_m - computed_.n_m,
+                                    result.grip_force_n - computed_.grip_n}));
     }
-    computed_ = computed;
+    computed_.n = result.unlimited_force_n;
+    computed_.n_m = result.unlimited_torque_n_m;
+    computed_.grip_n = result.grip_force_n;
     if (waiting_) {
-        waiting_ = !small(computed) || interrupted_;
+        waiting_ = !small(computed_) || interrupted_;
         rise_period_ = period_;
         result.waiting = waiting_;
     }
@@ -103,7 +106,10 @@ void Renderer::limit_and_send(TickResult& result, double lever_m, double left_wo
     const auto share = [](double of, double all) { return of < all ? of / all : 1.0; };
     const double of_force = result.force_n == force_n ? 1.0 : share(glm::length(result.force_n), glm::length(force_n));
     const double limit = std::min(of_force, share(std::abs(result.grip_force_n), std::abs(grip_n)));
-    sent_ = {result.force_n, result.torque_n_m, result.grip_force_n, limit * limit * held_j};
+    sent_.n = result.force_n;
+    sent_.n_m = result.torque_n_m;
+    sent_.grip_n = result.grip_force_n;
+    sent_.held_j = limit * limit * held_j;
 }
 
 } // namespace haptel::runtime

@@ -112,12 +112,11 @@ void distrust(haptel_sample& sample, uint32_t writes)
     }
 }
 
-haptel_sample evaluate(const TextureBinding& binding, const haptel_point& point)
+void evaluate(const TextureBinding& binding, const haptel_point& point, haptel_sample& sample)
 {
-    haptel_sample sample = blank_sample;
+    sample = blank_sample;
     binding.texture->height_gradient(&point, binding.block, &sample);
     distrust(sample, binding.texture->writes);
-    return sample;
 }
 
 TextureSample felt_within(const TextureBinding& binding, const haptel_sample& sample, const glm::dvec3& normal)
@@ -185,27 +184,32 @@ TextureSample felt(const TextureBinding& binding, const haptel_sample& sample, c
     return felt_within(binding, sample, normal);
 }
 
+TextureSample sample_again(const PublishedBinding& published, const SurfacePoint& at, LastSample& last)
+{
+    const auto& [serial, binding] = published;
+    if (!binding.texture) return {};
+    const bool is_new = last.serial != serial;
+    if (is_new) last = {.serial = serial};
+    if (take_in(last.point, at, binding.texture->reads) || is_new) evaluate(binding, last.point, last.sample);
+    return felt(binding, last.sample, at.shading.normal);
+}
+
 } // namespace
 
 TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& at) noexcept
 {
     if (!binding.texture) return {};
     haptel_point point = {};
+    haptel_sample sample;
     take_in(point, at, binding.texture->reads);
-    return felt(binding, evaluate(binding, point), at.shading.normal);
+    evaluate(binding, point, sample);
+    return felt(binding, sample, at.shading.normal);
 }
 
 TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at, LastSample& last) noexcept
 {
-    const auto& [serial, binding] = reader.to();
-    TextureSample to;
-    if (binding.texture) {
-        const bool is_new = last.serial != serial;
-        if (is_new) last = {.serial = serial};
-        if (take_in(last.point, at, binding.texture->reads) || is_new) last.sample = evaluate(binding, last.point);
-        to = felt(binding, last.sample, at.shading.normal);
-    }
-    return reader.fading() ? mixed(sample_texture(reader.from().binding, at), to, reader.weight()) : to;
+    if (!reader.fading()) return sample_again(reader.to(), at, last);
+    return mixed(sample_texture(reader.from().binding, at), sample_again(reader.to(), at, last), reader.weight());
 }
 
 TextureSample mixed(const TextureSample& from, const TextureSample& to, double share) noexcept
