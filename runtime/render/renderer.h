@@ -148,7 +148,8 @@ private:
         uint32_t part;
         bool is_first;    // of the part
         Contact contact;  // in its object's space
-        double share = 1; // of how deep the hand is below what is touched there, held by this contact
+        double below_m;   // the hand, of what is touched there: less than 0 above it, in a narrow groove
+        double share = 1; // of that, held by this contact
         // Of what is held together with others, in the world frame; `_dp`: gradients by the places of both ends.
         glm::dvec3 normal{0}; // unit
         Shaft direction{};    // of its push
@@ -172,7 +173,7 @@ private:
         Contact whole() const // as if it held all of it
         {
             Contact all = contact;
-            all.depth_m /= share;
+            all.depth_m = below_m;
             all.lag_m /= share;
             return all;
         }

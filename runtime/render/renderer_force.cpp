@@ -93,10 +93,11 @@ Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material&
 {
     ObjectForce result;
     const double stiffness = material.stiffness_n_per_m / hand_.workspace.scale;
-    const double damping =
-        damping_n(body, material.damping_n_s_per_m, placement, contact, contact.normal, contact.depth_m, stiffness);
     result.normal = placement.direction_to_world(contact.normal);
     result.felt_n_per_m = stiffness;
+    if (contact.depth_m <= 0) return result;
+    const double damping =
+        damping_n(body, material.damping_n_s_per_m, placement, contact, contact.normal, contact.depth_m, stiffness);
     result.spring_n = stiffness * contact.depth_m * result.normal;
     result.force_n = result.spring_n + damping * result.normal;
     result.surface_j = stiffness * contact.depth_m * contact.depth_m / 2;
@@ -123,8 +124,11 @@ Foot Renderer::foot_of(Touched& touched, const Contact& contact) const noexcept
 Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement,
                                          const Contact& contact) noexcept
 {
-    if (contact.depth_m == 0 && scene_->servo.skips.texture)
-        return {}; // the highest texture reaches up to the base and no further
+    if (contact.depth_m == 0 && scene_->servo.skips.texture) { // textures reach up to the base and no further
+        ObjectForce nothing;
+        nothing.felt_n_per_m = touched.object->material.stiffness_n_per_m / hand_.workspace.scale;
+        return nothing;
+    }
     if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
     const Foot foot = foot_of(touched, contact);
     if (foot.share == 1) return force_at(foot, body, touched, placement, contact);
@@ -169,7 +173,7 @@ TextureSample Renderer::texture_at(const Foot& foot, const Body& body, Touched& 
     }
     if (texture_reads(touched.texture) & HAPTEL_READS_VELOCITY)
         at.velocity_m_per_s = tangential(hand_m_per_s(body, placement, contact), foot.normal);
-    at.normal_force_n = stiffness_n_per_m * contact.depth_m;
+    at.normal_force_n = stiffness_n_per_m * std::max(0.0, contact.depth_m);
     at.tool_radius_m = probe_.radius_m;
     if (shares_.textures < 1) return mixed({}, sample_texture(touched.texture, at, touched.sample), shares_.textures);
     return sample_texture(touched.texture, at, touched.sample);

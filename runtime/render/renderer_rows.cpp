@@ -14,8 +14,7 @@
 // h_i is looked up straight below the place to which the others push the hand, and so it stays where they hold it: of
 // what holds little, little, so that nothing steps where a contact begins. The gradient counts all that changes with
 // the hand but how n_i turns, where a ball rests on an edge and with the shaft of a stylus, and how it steps from facet
-// to facet of a smooth surface. Between walls that are nearer to each other than a right angle h_i is looked up below
-// where the hand is. That is what is left on closed paths (tests/runtime/force/closed_paths.cpp).
+// to facet of a smooth surface. That is what is left on closed paths (tests/runtime/force/closed_paths.cpp).
 //
 // Friction and damping are felt by shares: of each contact as if it held all of the hand, times what it holds.
 #include "runtime/render/renderer.h"
@@ -43,10 +42,9 @@ constexpr double one_direction = 0.01;
 // What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
 // hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
 // the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
-double share_of(const Contact& contact, const glm::dvec3& normal, const glm::dvec3& way_m)
+double share_of(const Contact& contact, double below_m)
 {
-    const double below_m = glm::dot(way_m, normal);
-    return contact.depth_m > 0 && contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
+    return contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
 }
 
 Shaft in_object(const Placement& placement, const Shaft& way)
@@ -101,7 +99,10 @@ std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Con
             of_part = smooth_rows_.of(*touched.object->surface, of_part, way_m, probe_.radius_m, touched.lines);
         }
         for (const Contact& contact : of_part.first(std::min(of_part.size(), rows_.size() - count)))
-            rows_[count++] = {.part = part.part, .is_first = &contact == of_part.data(), .contact = contact};
+            rows_[count++] = {.part = part.part,
+                              .is_first = &contact == of_part.data(),
+                              .contact = contact,
+                              .below_m = contact.depth_m};
     }
     return {rows_.data(), count};
 }
@@ -121,7 +122,10 @@ Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> 
         held.row[held.count++] = &row;
     }
     if (held.count < 2 || !(length(held.way_m) > 0)) return {};
-    for (Row* row : held.rows()) row->share = share_of(row->contact, row->normal, held.way_m.at(row->contact.along));
+    for (Row* row : held.rows()) {
+        row->below_m = dot(row->direction, held.way_m);
+        row->share = share_of(row->contact, row->below_m);
+    }
     hold_still(held);
     for (Row* row : held.rows()) {
         glm::dvec3 moved_m(0);
@@ -216,27 +220,28 @@ void Renderer::push_together(const HeldTogether& held) noexcept
         return std::fabs(row->raised_m) <= exact_within * way_m && length(row->raised_dp) <= exact_within;
     };
     for (Row* row : held.rows()) raise(*row, held);
-    if (std::ranges::all_of(held.rows(), is_facet)) return;
-    ease_in(held);
-    std::array<ShaftRow, CreaseRows::rows_most> planes;
-    for (std::size_t i = 0; i < held.count; ++i) {
-        const Row& row = *held.row[i];
-        planes[i] = {row.normal, dot(row.direction, held.way_m) + row.raised_m, row.contact.along};
+    std::array<double, CreaseRows::rows_most> push_m{};
+    double told = 1;
+    if (std::ranges::all_of(held.rows(), is_facet)) {
+        for (std::size_t i = 0; i < held.count; ++i) push_m[i] = held.row[i]->contact.depth_m;
+    } else {
+        ease_in(held);
+        std::array<ShaftRow, CreaseRows::rows_most> planes;
+        for (std::size_t i = 0; i < held.count; ++i) {
+            const Row& row = *held.row[i];
+            planes[i] = {row.normal, dot(row.direction, held.way_m) + row.raised_m, row.contact.along};
+        }
+        const Projection<Shaft> at =
+            project(std::span<const ShaftRow>(planes.data(), held.count), {}, exact_within * way_m);
+        double pushes_m = 0;
+        for (std::size_t i = 0; i < at.count; ++i) pushes_m += push_m[at.active[i]] = at.push[i];
+        told = std::min(1.0, opposed_most * length(at.at) / pushes_m);
     }
-    const Projection<Shaft> at =
-        project(std::span<const ShaftRow>(planes.data(), held.count), {}, exact_within * way_m);
-    double pushes_m = 0;
-    for (std::size_t i = 0; i < at.count; ++i) pushes_m += at.push[i];
-    const double told = std::min(1.0, opposed_most * length(at.at) / pushes_m);
     for (std::size_t i = 0; i < held.count; ++i) {
         Row& row = *held.row[i];
         const double along = row.contact.along;
-        const auto active = std::find(at.active.begin(), at.active.begin() + at.count, i);
-        const double push_m = active == at.active.begin() + at.count
-                                  ? 0.0
-                                  : at.push[static_cast<std::size_t>(active - at.active.begin())];
         ObjectForce& force = row.force;
-        const Shaft more_n = told * (force.felt_n_per_m * push_m * (row.direction - row.raised_dp) -
+        const Shaft more_n = told * (force.felt_n_per_m * push_m[i] * (row.direction - row.raised_dp) -
                                      Shaft::pushed_at(along, row.share * force.spring_n));
         row.at_ends_n = more_n;
         const glm::dvec3 here_n = row.contact.by_shaft ? more_n.tip + more_n.tail
