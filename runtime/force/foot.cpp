@@ -267,4 +267,12 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& ha
     return foot;
 }
 
+glm::dmat3 turning(const FacetLines& lines, const Foot& foot) noexcept
+{
+    const double length = dot(lines.normal({foot.barycentric.y, foot.barycentric.z}), foot.normal);
+    const auto across = [&](const dvec3& n) { return (n - dot(n, foot.normal) * foot.normal) / length; };
+    return glm::outerProduct(across(lines.n[1]), foot.by_weights(1, 0)) +
+           glm::outerProduct(across(lines.n[2]), foot.by_weights(0, 1));
+}
+
 } // namespace haptel::runtime

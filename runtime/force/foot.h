@@ -81,4 +81,7 @@ inline glm::dvec3 hand_below(const Contact& contact, double held_above_m)
 Foot smooth_foot(const Surface& surface, const Contact& contact, const glm::dvec3& hand_m, double held_above_m,
                  FacetLines& last) noexcept;
 
+// 1/m: how the normal of a smooth foot on that facet turns with the hand's place.
+glm::dmat3 turning(const FacetLines& lines, const Foot& foot) noexcept;
+
 } // namespace haptel::runtime

@@ -133,8 +133,8 @@ private:
         Grain grain;                      // of the friction, object space
         glm::dvec3 spring_n{0};           // of force_n: by the spring of the surface
         double felt_n_per_m = 0;          // of that spring
-        double raised_m = 0;              // where it does not push: how far that is over the facets, less than 0,
-        glm::dvec3 raised_dp{0};          // and the gradient of it by the hand's place, world frame
+        double felt_m = 0;                // where it does not push: how deep the hand is below what is felt, at most 0,
+        glm::dvec3 felt_dp{0};            // and the gradient of that by the hand's place, world frame
         double surface_j = 0, held_j = 0; // in the spring of the surface, and with that of friction
         uint32_t faults = 0;
         double swing_hz = 0;                         // of a vibration that the texture asks for
@@ -151,14 +151,17 @@ private:
         double below_m;   // the hand, of what is touched there: less than 0 above it, in a narrow groove
         double share = 1; // of that, held by this contact
         // Of what is held together with others, in the world frame; `_dp`: gradients by the places of both ends.
-        glm::dvec3 normal{0}; // unit
-        Shaft direction{};    // of its push
+        glm::dvec3 normal{0}; // unit, of the facet
+        Shaft direction{};    // along that, of a push
         double held = 0;      // 0 .. 1, in how far places on the others stay where they are along it:
         double still_m = 0;   // by so much of its depth
         Shaft still_dp{};
         double off_m = 0; // how far the hand is from where this one does not hold
         Shaft off_dp{};
-        double raised_m = 0; // what is felt, above the facet
+        glm::dvec3 felt_normal{0}; // unit, of what is felt there,
+        glm::dmat3 normal_dp{0};   // 1/m: and how it turns with the place
+        Shaft felt_direction{};
+        double raised_m = 0; // along it: by so much what is felt is above the facet
         Shaft raised_dp{};
         double on_m = 0; // how far the probe goes on at most because that is below the facet
         Shaft on_dp{};
@@ -178,11 +181,23 @@ private:
             return all;
         }
     };
+    // What rows leave of a direction, (1 + sum of gain d d^T)^-1 of it, d their directions: by rank-one updates.
+    class Left {
+    public:
+        void add(const Shaft& direction, double gain) noexcept;
+        Shaft of(const Shaft& direction) const noexcept;
+
+    private:
+        std::array<Shaft, CreaseRows::rows_most> update_;
+        std::array<double, CreaseRows::rows_most> weight_;
+        std::size_t count_ = 0;
+    };
     // At one end of the probe; of a stylus anywhere.
     struct HeldTogether {
         std::array<Row*, CreaseRows::rows_most> row;
         std::size_t count = 0;
         Shaft way_m; // from the hand to the proxy
+        Left left;   // of a way of the hand, to the proxy
 
         std::span<Row* const> rows() const { return {row.data(), count}; }
     };
@@ -213,10 +228,11 @@ private:
                            std::span<const PartContacts> parts) noexcept;
     enum class Held : uint8_t { at_tip, at_tail, anywhere };
     HeldTogether held_together(const Body& body, std::span<Row> rows, Held where) const noexcept;
+    static Shaft felt_by(const Row& row, const glm::dvec3& by_place, const HeldTogether& held) noexcept;
     static void raise(Row& row, const HeldTogether& held) noexcept;
     static void ease_in(const HeldTogether& held) noexcept;
     static void push_together(const HeldTogether& held) noexcept;
-    static void hold_still(const HeldTogether& held) noexcept;
+    static void hold_still(HeldTogether& held) noexcept;
     void feel(Body& body, uint32_t part, bool is_first, const Contact& contact, const ObjectForce& force,
               const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
     double grown_since_m(const Renderer& before) const noexcept; // a ball in place of another
@@ -236,8 +252,9 @@ private:
     bool feels_in_air(const Body& body, const DevicePose& pose) noexcept;
     bool is_smooth(const Surface& surface) const noexcept;
     Foot foot_of(Touched& touched, const Contact& contact) const noexcept;
-    ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement,
-                         const Contact& contact) noexcept;
+    // `normal_dp`: how the normal of what is felt turns with the hand's place, world frame; null: nobody asks.
+    ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement, const Contact& contact,
+                         glm::dmat3* normal_dp = nullptr) noexcept;
     ObjectForce force_by_shaft(const Body& body, const Material& material, const Placement& placement,
                                const Contact& contact) const noexcept;
     ObjectForce force_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,

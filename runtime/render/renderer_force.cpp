@@ -24,6 +24,11 @@ double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
     return along == glm::dvec3(0) ? 0.0 : glm::dot(force_n, glm::normalize(along));
 }
 
+glm::dmat3 in_world(const Placement& placement, const glm::dmat3& by_place)
+{
+    return placement.rotation * by_place * glm::transpose(placement.rotation);
+}
+
 } // namespace
 
 // On the probe at the share `along` of the way from its tip to its tail.
@@ -95,7 +100,11 @@ Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material&
     const double stiffness = material.stiffness_n_per_m / hand_.workspace.scale;
     result.normal = placement.direction_to_world(contact.normal);
     result.felt_n_per_m = stiffness;
-    if (contact.depth_m <= 0) return result;
+    if (contact.depth_m <= 0) {
+        result.felt_m = contact.depth_m;
+        result.felt_dp = -result.normal;
+        return result;
+    }
     const double damping =
         damping_n(body, material.damping_n_s_per_m, placement, contact, contact.normal, contact.depth_m, stiffness);
     result.spring_n = stiffness * contact.depth_m * result.normal;
@@ -122,15 +131,18 @@ Foot Renderer::foot_of(Touched& touched, const Contact& contact) const noexcept
 }
 
 Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement,
-                                         const Contact& contact) noexcept
+                                         const Contact& contact, glm::dmat3* normal_dp) noexcept
 {
     if (contact.depth_m == 0 && scene_->servo.skips.texture) { // textures reach up to the base and no further
         ObjectForce nothing;
         nothing.felt_n_per_m = touched.object->material.stiffness_n_per_m / hand_.workspace.scale;
+        nothing.normal = placement.direction_to_world(contact.normal);
+        nothing.felt_dp = -nothing.normal;
         return nothing;
     }
     if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
     const Foot foot = foot_of(touched, contact);
+    if (normal_dp && !foot.is_flat()) *normal_dp = foot.share * in_world(placement, turning(touched.lines, foot));
     if (foot.share == 1) return force_at(foot, body, touched, placement, contact);
     ObjectForce force = force_at(foot, body, touched, placement, contact);
     const ObjectForce flat = force_at(flat_foot(*touched.object->surface, contact), body, touched, placement, contact);
@@ -144,8 +156,8 @@ void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const
     force_n = glm::mix(force_n, other.force_n, share) - (other.surface_j - surface_j) * share_dp;
     spring_n = glm::mix(spring_n, other.spring_n, share) - (other.surface_j - surface_j) * share_dp;
     felt_n_per_m = std::lerp(felt_n_per_m, other.felt_n_per_m, share);
-    raised_dp = glm::mix(raised_dp, other.raised_dp, share) + (other.raised_m - raised_m) * share_dp;
-    raised_m = std::lerp(raised_m, other.raised_m, share);
+    felt_dp = glm::mix(felt_dp, other.felt_dp, share) + (other.felt_m - felt_m) * share_dp;
+    felt_m = std::lerp(felt_m, other.felt_m, share);
     surface_j = std::lerp(surface_j, other.surface_j, share);
     held_j = std::lerp(held_j, other.held_j, share);
     height_m = std::lerp(height_m, other.height_m, share);
@@ -212,8 +224,8 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     if (texture.grain.is_there) result.grain = texture.grain;
     if (elastic.depth_m == 0) { // below the base surface, but not yet below the texture
         const bool displaced = force_rule_.model == ForceModel::displaced;
-        result.raised_m = (displaced ? foot.depth_m + texture.envelope_m : 0) - contact.depth_m;
-        result.raised_dp = placement.direction_to_world(contact.normal - foot.push + foot.felt(texture.gradient));
+        result.felt_m = displaced ? foot.depth_m + texture.envelope_m : 0;
+        result.felt_dp = placement.direction_to_world(foot.felt(texture.gradient) - foot.push);
         return result;
     }
 

@@ -3,18 +3,18 @@
 // Alone, a contact pushes with a spring: minus the gradient of half the square of how deep the hand is below what is
 // felt. Of several at one end of the probe, X is the shortest way from the hand to a place above all of
 //
-//   n_i . X >= d_i + h_i,
+//   N_i . X >= N_i . a_i + D_i.
 //
-// d_i how deep the hand is below facet i, h_i <= 0 by how much lower than it the texture and the smooth surface are.
-// Of a stylus X is the way of both its ends, and n_i . X that of the place which touches.
-// What all push together is minus the gradient of |X|^2 / 2: with the push p_i of each, how much of X is along n_i,
+// On i is felt what is below the place at the way a_i from the hand, to which the others push it: so that stays where
+// they hold it; of what holds little, little, and nothing steps where a contact begins. D_i is how deep the hand would
+// be there below what is felt, and N_i its normal: that of the smooth surface, if facets stand for one, which turns
+// with the place and does not step. Of a stylus X is the way of both its ends, and N_i . X that of the place which
+// touches.
 //
-//   sum of p_i (n_i - grad h_i).
-//
-// h_i is looked up straight below the place to which the others push the hand, and so it stays where they hold it: of
-// what holds little, little, so that nothing steps where a contact begins. The gradient counts all that changes with
-// the hand but how n_i turns, where a ball rests on an edge and with the shaft of a stylus, and how it steps from facet
-// to facet of a smooth surface. That is what is left on closed paths (tests/runtime/force/closed_paths.cpp).
+// What all push together is minus the gradient of |X|^2 / 2: the sum over the rows of their pushes p_i, how much of X
+// is along N_i, times the gradient of N_i . (X - a_i) - D_i, X kept. That counts all but how the normals of facets turn
+// where a ball rolls over an edge, and with the shaft of a stylus: they tell a_i, and whose depth is what holds. This
+// is what is left on closed paths (tests/runtime/force/closed_paths.cpp).
 //
 // Friction and damping are felt by shares: of each contact as if it held all of the hand, times what it holds.
 #include "runtime/render/renderer.h"
@@ -72,7 +72,9 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
     for (Row& row : rows) {
         Touched& touched = objects_[body.objects.number(row.part)];
         if (row.is_first) swing_on(touched);
-        row.force = force_of(body, touched, body.placement_of(*touched.object), row.whole());
+        row.force = force_of(body, touched, body.placement_of(*touched.object), row.whole(), &row.normal_dp);
+        row.felt_normal = is_smooth(*touched.object->surface) ? row.force.normal : row.normal;
+        row.felt_direction = Shaft::pushed_at(row.contact.along, row.felt_normal);
         row.force.force_n *= row.share;
         row.force.held_j *= row.share;
     }
@@ -136,30 +138,35 @@ Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> 
     return held;
 }
 
-// In how far each row does, and how that changes with the hand's place. What all others leave of a row's direction d,
-// each in so far as it holds, is (1 + sum of gain d d^T)^-1 d over the others: of the sum over all rows, by rank-one
-// updates, the row's own part is taken back.
-void Renderer::hold_still(const HeldTogether& held) noexcept
+void Renderer::Left::add(const Shaft& direction, double gain) noexcept
+{
+    update_[count_] = of(direction);
+    weight_[count_] = gain / (1 + gain * dot(direction, update_[count_]));
+    ++count_;
+}
+
+Shaft Renderer::Left::of(const Shaft& direction) const noexcept
+{
+    Shaft left = direction;
+    for (std::size_t i = 0; i < count_; ++i) left -= weight_[i] * dot(update_[i], direction) * update_[i];
+    return left;
+}
+
+// In how far each row does, and how that changes with the hand's place: by what all others leave of its direction, each
+// in so far as it holds. Of what all rows leave, its own part is taken back.
+void Renderer::hold_still(HeldTogether& held) noexcept
 {
     const double way_m = length(held.way_m);
-    std::array<Shaft, CreaseRows::rows_most> update;
-    std::array<double, CreaseRows::rows_most> weight;
-    std::size_t count = 0;
-    const auto rest_of = [&](const Shaft& direction) {
-        Shaft rest = direction;
-        for (std::size_t i = 0; i < count; ++i) rest -= weight[i] * dot(update[i], direction) * update[i];
-        return rest;
-    };
-    const auto gain = [](const Row& row) { return row.held / (1 - (1 - one_direction) * row.held); };
+    const auto gain = [](double holds) { return holds / (1 - (1 - one_direction) * holds); };
+    Left by_all;
     for (Row* row : held.rows()) {
         row->held = Rise(row->contact.depth_m / (holds_still * way_m)).value;
-        update[count] = rest_of(row->direction);
-        weight[count] = gain(*row) / (1 + gain(*row) * dot(row->direction, update[count]));
-        ++count;
+        by_all.add(row->direction, gain(row->held));
+        held.left.add(row->direction, gain(1));
     }
     for (Row* row : held.rows()) {
-        const Shaft rest = rest_of(row->direction),
-                    left = 1 / (1 - gain(*row) * dot(row->direction, rest)) * rest; // by the others
+        const Shaft rest = by_all.of(row->direction),
+                    left = 1 / (1 - gain(row->held) * dot(row->direction, rest)) * rest; // by the others
         const double square = dot(row->direction, left);
         const Shaft depth_dp = -1 / square * left;
         const double depth_m = row->contact.depth_m, q = depth_m / (holds_still * way_m);
@@ -172,17 +179,30 @@ void Renderer::hold_still(const HeldTogether& held) noexcept
     }
 }
 
+// By the places of both ends, what changes so with the place on a row: that goes with the hand, and with what the
+// others hold still.
+Shaft Renderer::felt_by(const Row& row, const glm::dvec3& by_place, const HeldTogether& held) noexcept
+{
+    Shaft felt = Shaft::pushed_at(row.contact.along, by_place);
+    for (const Row* other : held.rows())
+        if (other != &row) felt += glm::dot(by_place, other->way_of(row)) * other->still_dp;
+    return felt;
+}
+
 // By how much what is felt on a row is above its facet, mostly less than 0, and how that changes with the hand's place.
 void Renderer::raise(Row& row, const HeldTogether& held) noexcept
 {
     const ObjectForce& force = row.force;
     const double stiffness = force.felt_n_per_m,
-                 felt_m = stiffness > 0 ? std::sqrt(2 * force.surface_j / stiffness) : 0.0;
-    row.raised_m = felt_m > 0 ? felt_m - row.whole().depth_m : force.raised_m;
-    const glm::dvec3 below_dp = felt_m > 0 ? row.normal - force.spring_n / (stiffness * felt_m) : force.raised_dp;
-    row.raised_dp = Shaft::pushed_at(row.contact.along, below_dp);
+                 pushed_m = stiffness > 0 ? std::sqrt(2 * force.surface_j / stiffness) : 0.0;
+    const double felt_m = pushed_m > 0 ? pushed_m : force.felt_m;
+    const glm::dvec3 felt_dp = pushed_m > 0 ? -force.spring_n / (stiffness * pushed_m) : force.felt_dp;
+    glm::dvec3 left_m = held.way_m.at(row.contact.along); // from where it is felt to the proxy
     for (const Row* other : held.rows())
-        if (other != &row) row.raised_dp += glm::dot(below_dp, other->way_of(row)) * other->still_dp;
+        if (other != &row) left_m -= other->still_m * other->way_of(row);
+    row.raised_m = felt_m - glm::dot(row.felt_normal, left_m);
+    row.raised_dp = felt_by(row, row.felt_normal + felt_dp - left_m * row.normal_dp, held) -
+                    held.left.of(row.felt_direction - row.direction);
     if (!(row.raised_m < 0)) return;
     const double left = std::max(0.0, 1 + row.off_m / row.raised_m);
     row.on_m = -row.raised_m * (1 - left * left);
@@ -217,11 +237,13 @@ void Renderer::push_together(const HeldTogether& held) noexcept
 {
     const double way_m = length(held.way_m);
     const auto is_facet = [&](const Row* row) {
-        return std::fabs(row->raised_m) <= exact_within * way_m && length(row->raised_dp) <= exact_within;
+        return std::fabs(row->raised_m) <= exact_within * way_m && length(row->raised_dp) <= exact_within &&
+               row->felt_normal == row->normal;
     };
     for (Row* row : held.rows()) raise(*row, held);
     std::array<double, CreaseRows::rows_most> push_m{};
     double told = 1;
+    Shaft more_m; // from there to the proxy
     if (std::ranges::all_of(held.rows(), is_facet)) {
         for (std::size_t i = 0; i < held.count; ++i) push_m[i] = held.row[i]->contact.depth_m;
     } else {
@@ -229,20 +251,23 @@ void Renderer::push_together(const HeldTogether& held) noexcept
         std::array<ShaftRow, CreaseRows::rows_most> planes;
         for (std::size_t i = 0; i < held.count; ++i) {
             const Row& row = *held.row[i];
-            planes[i] = {row.normal, dot(row.direction, held.way_m) + row.raised_m, row.contact.along};
+            planes[i] = {row.felt_normal, dot(row.felt_direction, held.way_m) + row.raised_m, row.contact.along};
         }
         const Projection<Shaft> at =
             project(std::span<const ShaftRow>(planes.data(), held.count), {}, exact_within * way_m);
         double pushes_m = 0;
         for (std::size_t i = 0; i < at.count; ++i) pushes_m += push_m[at.active[i]] = at.push[i];
         told = std::min(1.0, opposed_most * length(at.at) / pushes_m);
+        more_m = held.way_m - at.at;
     }
     for (std::size_t i = 0; i < held.count; ++i) {
         Row& row = *held.row[i];
         const double along = row.contact.along;
         ObjectForce& force = row.force;
-        const Shaft more_n = told * (force.felt_n_per_m * push_m[i] * (row.direction - row.raised_dp) -
-                                     Shaft::pushed_at(along, row.share * force.spring_n));
+        const Shaft push_dp = row.felt_direction - held.left.of(row.felt_direction - row.direction) - row.raised_dp -
+                              felt_by(row, more_m.at(along) * row.normal_dp, held);
+        const Shaft more_n =
+            told * (force.felt_n_per_m * push_m[i] * push_dp - Shaft::pushed_at(along, row.share * force.spring_n));
         row.at_ends_n = more_n;
         const glm::dvec3 here_n = row.contact.by_shaft ? more_n.tip + more_n.tail
                                   : along > 0          ? more_n.tail

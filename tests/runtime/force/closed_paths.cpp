@@ -241,9 +241,9 @@ TEST_CASE("across the hole of a ring a stylus on its tip and its shaft gives les
 namespace {
 
 // A ball on both flanks, which hold it together (runtime/render/renderer_rows.cpp).
-void check_in_valley(double height_m)
+void check_in_valley(double height_m, uint32_t cells, double allowed)
 {
-    Mesh valley = plane_mesh(0.04, 160);
+    Mesh valley = plane_mesh(0.04, cells);
     for (dvec3& p : valley.positions_m)
         p.z = height_m * (1 + 0.3 * std::sin(p.y / 0.006)) * (1 - std::cos(p.x * std::numbers::pi / 0.01));
     for (const double texture_m : {0.0, 25e-6}) {
@@ -268,7 +268,7 @@ void check_in_valley(double height_m)
             path.swings = 1 + i % 3;
             CAPTURE(texture_m, i, path.width_m, path.breadth_m, path.depth_m, path.swing_m);
             const Work work = work_once_round(touched, path, 20'000);
-            CHECK(std::fabs(work.given_j) < (texture_m > 0 ? 1e-2 : 1e-3) * work.pressed_j);
+            CHECK(std::fabs(work.given_j) < (texture_m > 0 ? 1e-2 : allowed) * work.pressed_j);
         }
     }
 }
@@ -277,12 +277,13 @@ void check_in_valley(double height_m)
 
 TEST_CASE("in a smooth valley narrower than the ball closed paths give less than a thousandth, textured a hundredth")
 {
-    check_in_valley(0.005);
+    check_in_valley(0.005, 160, 4e-4);
+    check_in_valley(0.005, 60, 2e-3);
 }
 
 TEST_CASE("in a smooth valley whose flanks are nearer to each other than a right angle closed paths give as little")
 {
-    check_in_valley(0.012);
+    check_in_valley(0.012, 160, 1e-3);
 }
 
 namespace {
