@@ -188,8 +188,11 @@ private:
         Shaft of(const Shaft& direction) const noexcept;
 
     private:
-        std::array<Shaft, CreaseRows::rows_most> update_;
-        std::array<double, CreaseRows::rows_most> weight_;
+        struct Update { // left as it is until it is told
+            glm::dvec3 tip, tail;
+            double weight;
+        };
+        std::array<Update, CreaseRows::rows_most> updates_;
         std::size_t count_ = 0;
     };
     // At one end of the probe; of a stylus anywhere.
@@ -199,6 +202,7 @@ private:
         Shaft way_m; // from the hand to the proxy
         Left left;   // of a way of the hand, to the proxy
 
+        HeldTogether() noexcept {} // of the arrays nothing is set to 0
         std::span<Row* const> rows() const { return {row.data(), count}; }
     };
     struct Skipped { // in this tick

@@ -140,15 +140,19 @@ Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> 
 
 void Renderer::Left::add(const Shaft& direction, double gain) noexcept
 {
-    update_[count_] = of(direction);
-    weight_[count_] = gain / (1 + gain * dot(direction, update_[count_]));
-    ++count_;
+    const Shaft left = of(direction);
+    updates_[count_++] = {left.tip, left.tail, gain / (1 + gain * dot(direction, left))};
 }
 
 Shaft Renderer::Left::of(const Shaft& direction) const noexcept
 {
     Shaft left = direction;
-    for (std::size_t i = 0; i < count_; ++i) left -= weight_[i] * dot(update_[i], direction) * update_[i];
+    for (std::size_t i = 0; i < count_; ++i) {
+        const auto& [tip, tail, weight] = updates_[i];
+        const double part = weight * (glm::dot(tip, direction.tip) + glm::dot(tail, direction.tail));
+        left.tip -= part * tip;
+        left.tail -= part * tail;
+    }
     return left;
 }
 
