@@ -241,6 +241,7 @@ bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand
         if (foot.share == 0) return false;
         find_depth(lines, at, length, held_above_m, foot);
         foot.way = foot.normal = at.normal / length;
+        foot.normal_length = length;
         find_place(lines, at.b, beyond, foot);
         return true;
     }
@@ -269,8 +270,7 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& ha
 
 glm::dmat3 turning(const FacetLines& lines, const Foot& foot) noexcept
 {
-    const double length = dot(lines.normal({foot.barycentric.y, foot.barycentric.z}), foot.normal);
-    const auto across = [&](const dvec3& n) { return (n - dot(n, foot.normal) * foot.normal) / length; };
+    const auto across = [&](const dvec3& n) { return (n - dot(n, foot.normal) * foot.normal) / foot.normal_length; };
     return glm::outerProduct(across(lines.n[1]), foot.by_weights(1, 0)) +
            glm::outerProduct(across(lines.n[2]), foot.by_weights(0, 1));
 }

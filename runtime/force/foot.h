@@ -36,6 +36,7 @@ struct Foot {
     double depth_m;         // of the hand below what is felt there without a texture; less than 0: above it
     glm::dvec3 way;         // unit: along which that depth is measured
     glm::dvec3 normal;      // unit: of what is felt there
+    double normal_length;   // of a smooth foot: of that between the corners' normals
     glm::dvec3 push;        // of a spring of depth_m: of a smooth foot minus its gradient, else `normal`
     // How at_m moves with the hand: by the weights of the second and the third corner along edges of the facet, and by
     // them the hand along `line_m`; `turned_per_m2` is `normal` over the volume of all three. Of a flat foot that is 0:

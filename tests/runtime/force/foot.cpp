@@ -30,6 +30,8 @@ class Stroke {
 public:
     explicit Stroke(std::shared_ptr<const Surface> surface) : contact_(std::move(surface), false) {}
 
+    const FacetLines& lines() const { return lines_; } // of that foot
+
     std::optional<Foot> foot(const dvec3& hand_m)
     {
         contact_.tick(hand_m, {});
@@ -72,9 +74,10 @@ TEST_CASE("what a foot says of its changes is what differences say")
             const dvec3 hand_m = middle_m - deep_m * normal + 0.3 * deep_m * dvec3(uniform(random), uniform(random), 0);
             const auto here = stroke.foot(hand_m);
             if (!here) continue;
+            const glm::dmat3 turns = turning(stroke.lines(), *here);
             constexpr double step_m = 1e-7;
             dvec3 depth_dp, share_dp;
-            glm::dmat3 at_dp;
+            glm::dmat3 at_dp, normal_dp;
             bool same = true; // contact clicks from one facet to another
             for (int j = 0; j < 3 && same; ++j) {
                 dvec3 step(0);
@@ -86,6 +89,7 @@ TEST_CASE("what a foot says of its changes is what differences say")
                 depth_dp[j] = (ahead->depth_m - behind->depth_m) / (2 * step_m);
                 share_dp[j] = (ahead->share - behind->share) / (2 * step_m);
                 at_dp[j] = (ahead->at_m - behind->at_m) / (2 * step_m);
+                normal_dp[j] = (ahead->normal - behind->normal) / (2 * step_m);
             }
             if (!same) continue;
             ++compared;
@@ -96,6 +100,7 @@ TEST_CASE("what a foot says of its changes is what differences say")
             if (here->share < 1) CHECK(glm::distance(here->share_dp, share_dp) < 3e-4 * (1 + glm::length(share_dp)));
             const dvec3 g(uniform(random), uniform(random), uniform(random)); // of a height
             CHECK(glm::distance(here->felt(g), g * at_dp) < 1e-4 * (1 + glm::length(here->felt(g))));
+            CHECK(glm::distance(turns * g, normal_dp * g) < 1e-4 * (1 + glm::length(turns * g)));
         }
     }
     CHECK(compared > tries(4000));
@@ -126,13 +131,15 @@ TEST_CASE("beyond borders and corners of an open surface a foot says of its chan
             FacetLines lines;
             return smooth_foot(*surface, contact, hand, 0, lines);
         };
-        const Foot here = foot_of(hand_m);
+        FacetLines lines;
+        const Foot here = smooth_foot(*surface, contact, hand_m, 0, lines);
         const int borders = static_cast<int>(here.barycentric.x == 0) + static_cast<int>(here.barycentric.y == 0) +
                             static_cast<int>(here.barycentric.z == 0);
         if (here.share == 0 || borders == 0) continue;
         const dvec3 g(uniform(random), uniform(random), uniform(random)); // of a height
         constexpr double step_m = 1e-8;
         dvec3 felt(0), depth_dp(0);
+        glm::dmat3 normal_dp;
         bool same = true; // and not at the place where another facet begins
         for (int j = 0; j < 3; ++j) {
             dvec3 step(0);
@@ -143,12 +150,15 @@ TEST_CASE("beyond borders and corners of an open surface a foot says of its chan
                    glm::equal(behind.barycentric, dvec3(0)) == glm::equal(here.barycentric, dvec3(0));
             felt[j] = glm::dot(g, ahead.at_m - behind.at_m) / (2 * step_m);
             depth_dp[j] = (ahead.depth_m - behind.depth_m) / (2 * step_m);
+            normal_dp[j] = (ahead.normal - behind.normal) / (2 * step_m);
         }
         if (!same) continue;
         (borders == 2 ? beyond_corners : beyond_borders) += 1;
         CAPTURE(i, borders);
         CHECK(glm::distance(here.felt(g), felt) < 1e-5);
         CHECK(glm::distance(here.push, -depth_dp) < 1e-5 * (1 + glm::length(here.push)));
+        const glm::dvec3 turned = turning(lines, here) * g;
+        CHECK(glm::distance(turned, normal_dp * g) < 1e-4 * (1 + glm::length(turned)));
     }
     CHECK(beyond_borders > tries(100));
     CHECK(beyond_corners > tries(20));
