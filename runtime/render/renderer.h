@@ -148,8 +148,8 @@ private:
         uint32_t part;
         bool is_first;    // of the part
         Contact contact;  // in its object's space
-        double below_m;   // the hand, of what is touched there: less than 0 above it, in a narrow groove
-        double share = 1; // of that, held by this contact
+        double below_m;   // of what is touched there, the hand: less than 0 above it, in a narrow groove
+        double share = 1; // of that, held by this contact: of several nearly in one plane a part, else all
         // Of what is held together with others, in the world frame; `_dp`: gradients by the places of both ends.
         glm::dvec3 normal{0}; // unit, of the facet
         Shaft direction{};    // along that, of a push
@@ -158,10 +158,12 @@ private:
         Shaft still_dp{};
         double off_m = 0; // how far the hand is from where this one does not hold
         Shaft off_dp{};
+        double felt_m = 0; // how deep the hand would be below what is felt, at its place on this row
+        glm::dvec3 felt_dp{0};
         glm::dvec3 felt_normal{0}; // unit, of what is felt there,
         glm::dmat3 normal_dp{0};   // 1/m: and how it turns with the place
         Shaft felt_direction{};
-        double raised_m = 0; // along it: by so much what is felt is above the facet
+        double raised_m = 0; // along it: how far the proxy is below what is felt, mostly less than 0
         Shaft raised_dp{};
         double on_m = 0; // how far the probe goes on at most because that is below the facet
         Shaft on_dp{};
@@ -176,16 +178,16 @@ private:
         Contact whole() const // as if it held all of it
         {
             Contact all = contact;
-            all.depth_m = below_m;
+            all.depth_m /= share;
             all.lag_m /= share;
             return all;
         }
     };
-    // What rows leave of a direction, (1 + sum of gain d d^T)^-1 of it, d their directions: by rank-one updates.
-    class Left {
+    // What rows do not hold of a way, (1 + sum of gain d d^T)^-1 of it, d their directions: by rank-one updates.
+    class Unheld {
     public:
         void add(const Shaft& direction, double gain) noexcept;
-        Shaft of(const Shaft& direction) const noexcept;
+        Shaft of(const Shaft& way) const noexcept;
 
     private:
         struct Update { // left as it is until it is told
@@ -199,8 +201,8 @@ private:
     struct HeldTogether {
         std::array<Row*, CreaseRows::rows_most> row;
         std::size_t count = 0;
-        Shaft way_m; // from the hand to the proxy
-        Left left;   // of a way of the hand, to the proxy
+        Shaft way_m;   // from the hand to the proxy
+        Unheld unheld; // of a way of the hand: the proxy goes it
 
         HeldTogether() noexcept {} // of the arrays nothing is set to 0
         std::span<Row* const> rows() const { return {row.data(), count}; }
@@ -233,6 +235,7 @@ private:
     enum class Held : uint8_t { at_tip, at_tail, anywhere };
     HeldTogether held_together(const Body& body, std::span<Row> rows, Held where) const noexcept;
     static Shaft felt_by(const Row& row, const glm::dvec3& by_place, const HeldTogether& held) noexcept;
+    void feel_row(const Body& body, Row& row) noexcept;
     static void raise(Row& row, const HeldTogether& held) noexcept;
     static void ease_in(const HeldTogether& held) noexcept;
     static void push_together(const HeldTogether& held) noexcept;
@@ -256,7 +259,8 @@ private:
     bool feels_in_air(const Body& body, const DevicePose& pose) noexcept;
     bool is_smooth(const Surface& surface) const noexcept;
     Foot foot_of(Touched& touched, const Contact& contact) const noexcept;
-    // `normal_dp`: how the normal of what is felt turns with the hand's place, world frame; null: nobody asks.
+    // `normal_dp`: how the normal of what is felt turns with the hand's place, by the share of the smooth foot, world
+    // frame; null: nobody asks.
     ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement, const Contact& contact,
                          glm::dmat3* normal_dp = nullptr) noexcept;
     ObjectForce force_by_shaft(const Body& body, const Material& material, const Placement& placement,

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double two_pi = 6.283185307179586;
 
-// Copied: what a compiler makes of its default values in place, zeros and the rest of each, waits for the memory.
+// Copied. Made in place, its ones are written in two pieces, and who reads one at once waits until both are in memory.
 const TextureSample flat_sample;
 
 // From the finger at the tip to that at the tail.
@@ -142,11 +142,13 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
     }
     if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
     const Foot foot = foot_of(touched, contact);
-    if (normal_dp && !foot.is_flat()) *normal_dp = foot.share * in_world(placement, turning(touched.lines, foot));
+    if (normal_dp) *normal_dp = foot.is_flat() ? glm::dmat3(0) : in_world(placement, turning(touched.lines, foot));
     if (foot.share == 1) return force_at(foot, body, touched, placement, contact);
     ObjectForce force = force_at(foot, body, touched, placement, contact);
     const ObjectForce flat = force_at(flat_foot(*touched.object->surface, contact), body, touched, placement, contact);
-    force.mix_in(flat, 1 - foot.share, -placement.direction_to_world(foot.share_dp));
+    const glm::dvec3 share_dp = placement.direction_to_world(foot.share_dp);
+    if (normal_dp) *normal_dp *= foot.share;
+    force.mix_in(flat, 1 - foot.share, -share_dp);
     return force;
 }
 
@@ -224,8 +226,8 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     if (texture.grain.is_there) result.grain = texture.grain;
     if (elastic.depth_m == 0) { // below the base surface, but not yet below the texture
         const bool displaced = force_rule_.model == ForceModel::displaced;
-        result.felt_m = displaced ? foot.depth_m + texture.envelope_m : 0;
-        result.felt_dp = placement.direction_to_world(foot.felt(texture.gradient) - foot.push);
+        result.felt_m = displaced ? foot.depth_m + texture.envelope_m : std::min(0.0, foot.depth_m);
+        result.felt_dp = placement.direction_to_world(displaced ? foot.felt(texture.gradient) - foot.push : -foot.push);
         return result;
     }
 

@@ -12,9 +12,9 @@
 // touches.
 //
 // What all push together is minus the gradient of |X|^2 / 2: the sum over the rows of their pushes p_i, how much of X
-// is along N_i, times the gradient of N_i . (X - a_i) - D_i, X kept. That counts all but how the normals of facets turn
-// where a ball rolls over an edge, and with the shaft of a stylus: they tell a_i, and whose depth is what holds. This
-// is what is left on closed paths (tests/runtime/force/closed_paths.cpp).
+// is along N_i, times the gradient of N_i . (X - a_i) - D_i, X kept. One thing is left out: a_i is told by the normals
+// of facets, and how they turn where a ball rolls over an edge, and with the shaft of a stylus, is not counted. This is
+// what is left on closed paths (tests/runtime/force/closed_paths.cpp).
 //
 // Friction and damping are felt by shares: of each contact as if it held all of the hand, times what it holds.
 #include "runtime/render/renderer.h"
@@ -72,11 +72,7 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
     for (Row& row : rows) {
         Touched& touched = objects_[body.objects.number(row.part)];
         if (row.is_first) swing_on(touched);
-        row.force = force_of(body, touched, body.placement_of(*touched.object), row.whole(), &row.normal_dp);
-        row.felt_normal = is_smooth(*touched.object->surface) ? row.force.normal : row.normal;
-        row.felt_direction = Shaft::pushed_at(row.contact.along, row.felt_normal);
-        row.force.force_n *= row.share;
-        row.force.held_j *= row.share;
+        feel_row(body, row);
     }
     for (const HeldTogether& end : held) push_together(end);
     for (const Row& row : rows) { // what presses most first, of a stylus its tip
@@ -84,6 +80,30 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
         add_force(result, pose, 0, row.at_ends_n.tip);
         add_force(result, pose, 1, row.at_ends_n.tail);
     }
+}
+
+// Friction and damping as if the row held all of the hand, times its share, and what is felt there by how deep the hand
+// is: between walls that are nearer to each other than a right angle it pushes by more.
+void Renderer::feel_row(const Body& body, Row& row) noexcept
+{
+    Touched& touched = objects_[body.objects.number(row.part)];
+    const Placement& placement = body.placement_of(*touched.object);
+    const auto tell = [&](const ObjectForce& force) {
+        const double stiffness = force.felt_n_per_m,
+                     pushed_m = stiffness > 0 ? std::sqrt(2 * force.surface_j / stiffness) : 0.0;
+        row.felt_m = pushed_m > 0 ? pushed_m : force.felt_m;
+        row.felt_dp = pushed_m > 0 ? -force.spring_n / (stiffness * pushed_m) : force.felt_dp;
+        row.felt_normal = is_smooth(*touched.object->surface) ? force.normal : row.normal;
+        row.felt_direction = Shaft::pushed_at(row.contact.along, row.felt_normal);
+    };
+    row.force = force_of(body, touched, placement, row.whole(), &row.normal_dp);
+    tell(row.force);
+    row.force.force_n *= row.share;
+    row.force.held_j *= row.share;
+    if (row.below_m >= row.contact.depth_m) return;
+    Contact there = row.contact;
+    there.depth_m = row.below_m;
+    tell(force_of(body, touched, placement, there, &row.normal_dp));
 }
 
 std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Contact> contacts,
@@ -123,7 +143,10 @@ Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> 
         held.way_m += row.contact.depth_m * row.direction;
         held.row[held.count++] = &row;
     }
-    if (held.count < 2 || !(length(held.way_m) > 0)) return {};
+    if (held.count < 2 || !(length(held.way_m) > 0)) {
+        held.count = 0;
+        return held;
+    }
     for (Row* row : held.rows()) {
         row->below_m = dot(row->direction, held.way_m);
         row->share = share_of(row->contact, row->below_m);
@@ -138,18 +161,18 @@ Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> 
     return held;
 }
 
-void Renderer::Left::add(const Shaft& direction, double gain) noexcept
+void Renderer::Unheld::add(const Shaft& direction, double gain) noexcept
 {
     const Shaft left = of(direction);
     updates_[count_++] = {left.tip, left.tail, gain / (1 + gain * dot(direction, left))};
 }
 
-Shaft Renderer::Left::of(const Shaft& direction) const noexcept
+Shaft Renderer::Unheld::of(const Shaft& way) const noexcept
 {
-    Shaft left = direction;
+    Shaft left = way;
     for (std::size_t i = 0; i < count_; ++i) {
         const auto& [tip, tail, weight] = updates_[i];
-        const double part = weight * (glm::dot(tip, direction.tip) + glm::dot(tail, direction.tail));
+        const double part = weight * (glm::dot(tip, way.tip) + glm::dot(tail, way.tail));
         left.tip -= part * tip;
         left.tail -= part * tail;
     }
@@ -162,11 +185,11 @@ void Renderer::hold_still(HeldTogether& held) noexcept
 {
     const double way_m = length(held.way_m);
     const auto gain = [](double holds) { return holds / (1 - (1 - one_direction) * holds); };
-    Left by_all;
+    Unheld by_all;
     for (Row* row : held.rows()) {
         row->held = Rise(row->contact.depth_m / (holds_still * way_m)).value;
         by_all.add(row->direction, gain(row->held));
-        held.left.add(row->direction, gain(1));
+        held.unheld.add(row->direction, gain(1));
     }
     for (Row* row : held.rows()) {
         const Shaft rest = by_all.of(row->direction),
@@ -193,20 +216,15 @@ Shaft Renderer::felt_by(const Row& row, const glm::dvec3& by_place, const HeldTo
     return felt;
 }
 
-// By how much what is felt on a row is above its facet, mostly less than 0, and how that changes with the hand's place.
+// How far the proxy is below what is felt on a row, mostly less than 0, and how that changes with the hand's place.
 void Renderer::raise(Row& row, const HeldTogether& held) noexcept
 {
-    const ObjectForce& force = row.force;
-    const double stiffness = force.felt_n_per_m,
-                 pushed_m = stiffness > 0 ? std::sqrt(2 * force.surface_j / stiffness) : 0.0;
-    const double felt_m = pushed_m > 0 ? pushed_m : force.felt_m;
-    const glm::dvec3 felt_dp = pushed_m > 0 ? -force.spring_n / (stiffness * pushed_m) : force.felt_dp;
     glm::dvec3 left_m = held.way_m.at(row.contact.along); // from where it is felt to the proxy
     for (const Row* other : held.rows())
         if (other != &row) left_m -= other->still_m * other->way_of(row);
-    row.raised_m = felt_m - glm::dot(row.felt_normal, left_m);
-    row.raised_dp = felt_by(row, row.felt_normal + felt_dp - left_m * row.normal_dp, held) -
-                    held.left.of(row.felt_direction - row.direction);
+    row.raised_m = row.felt_m - glm::dot(row.felt_normal, left_m);
+    row.raised_dp = felt_by(row, row.felt_normal + row.felt_dp - left_m * row.normal_dp, held) -
+                    held.unheld.of(row.felt_direction - row.direction);
     if (!(row.raised_m < 0)) return;
     const double left = std::max(0.0, 1 + row.off_m / row.raised_m);
     row.on_m = -row.raised_m * (1 - left * left);
@@ -268,7 +286,7 @@ void Renderer::push_together(const HeldTogether& held) noexcept
         Row& row = *held.row[i];
         const double along = row.contact.along;
         ObjectForce& force = row.force;
-        const Shaft push_dp = row.felt_direction - held.left.of(row.felt_direction - row.direction) - row.raised_dp -
+        const Shaft push_dp = row.felt_direction - held.unheld.of(row.felt_direction - row.direction) - row.raised_dp -
                               felt_by(row, more_m.at(along) * row.normal_dp, held);
         const Shaft more_n =
             told * (force.felt_n_per_m * push_m[i] * push_dp - Shaft::pushed_at(along, row.share * force.spring_n));

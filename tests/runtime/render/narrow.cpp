@@ -60,6 +60,32 @@ TEST_CASE("a narrow gap between a soft and a hard object pushes by a few times t
     }
 }
 
+TEST_CASE("in a rough groove of 60 degrees the force has no step where the hand goes over the plane of a wall")
+{
+    // Behind the bottom it is above that wall, and still held by it.
+    constexpr double angle = 1.047, step_m = 1e-5;
+    Scene scene = gap_scene(angle, 1000, 1000);
+    for (SceneObject& object : scene.objects) {
+        object.material.static_friction = object.material.dynamic_friction = 0.3;
+        object.material.damping_n_s_per_m = 2;
+    }
+    Renderer renderer(shared(std::move(scene)));
+    for (double x = 0.02; x > -3e-3; x -= step_m) renderer.tick(at(x, 0, 0.5 * std::max(x, 0.0)));
+    dvec3 before(0);
+    int above = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const double z = -1e-3 + 2e-6 * i;
+        const TickResult tick = renderer.tick(at(-3e-3, step_m * i, z));
+        CAPTURE(i, z);
+        REQUIRE(tick.contacts == 2);
+        // 0.01 N by the spring, once the hand goes that way
+        if (i > 50) CHECK(glm::distance(tick.unlimited_force_n, before) < 0.03);
+        before = tick.unlimited_force_n;
+        above += z > 0 && std::fabs(before.y) > 1; // friction holds it back
+    }
+    CHECK(above > 400);
+}
+
 TEST_CASE("a texture in a narrow groove acts by a few times the way of the ball, not by its walls' pushes")
 {
     constexpr double angle = 0.03, radius_m = 1e-3, length_m = 0.12, amplitude_m = 1e-4, per_m = 600;
