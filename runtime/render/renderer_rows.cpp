@@ -12,9 +12,9 @@
 // touches.
 //
 // What all push together is minus the gradient of |X|^2 / 2: the sum over the rows of their pushes p_i, how much of X
-// is along N_i, times the gradient of N_i . (X - a_i) - D_i, X kept. One thing is left out: a_i is told by the normals
-// of facets, and how they turn where a ball rolls over an edge, and with the shaft of a stylus, is not counted. This is
-// what is left on closed paths (tests/runtime/force/closed_paths.cpp).
+// is along N_i, times the gradient of N_i . (X - a_i) - D_i, X kept. Left out is how the normals of facets, which tell
+// a_i, turn where a ball rolls over an edge and with the shaft of a stylus; and where flat facets are felt by a share,
+// how N_i turns with that. This is what is left on closed paths (tests/runtime/force/closed_paths.cpp).
 //
 // Friction and damping are felt by shares: of each contact as if it held all of the hand, times what it holds.
 #include "runtime/render/renderer.h"
