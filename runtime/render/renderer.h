@@ -153,6 +153,7 @@ private:
         // Of what is held together with others, in the world frame; `_dp`: gradients by the places of both ends.
         glm::dvec3 normal{0}; // unit, of the facet
         Shaft direction{};    // along that, of a push
+        Shaft depth_dp{};     // of contact.depth_m
         double held = 0;      // 0 .. 1, in how far places on the others stay where they are along it:
         double still_m = 0;   // by so much of its depth
         Shaft still_dp{};
@@ -165,8 +166,8 @@ private:
         Shaft felt_direction{};
         double raised_m = 0; // along it: how far the proxy is below what is felt, mostly less than 0
         Shaft raised_dp{};
-        double on_m = 0; // how far the probe goes on at most because that is below the facet
-        Shaft on_dp{};
+        double eased_m = 0; // less of that while contact has begun
+        Shaft eased_dp{};
         Shaft at_ends_n{}; // felt there besides `force`
         ObjectForce force{};
 
@@ -237,6 +238,8 @@ private:
     static Shaft felt_by(const Row& row, const glm::dvec3& by_place, const HeldTogether& held) noexcept;
     void feel_row(const Body& body, Row& row) noexcept;
     static void raise(Row& row, const HeldTogether& held) noexcept;
+    static ShaftRow plane_of(const Row& row, const Shaft& way_m) noexcept;
+    static Shaft below_dp(const Row& row, const Shaft& way_m, const Shaft& at_m, const HeldTogether& held) noexcept;
     static void ease_in(const HeldTogether& held) noexcept;
     static void push_together(const HeldTogether& held) noexcept;
     static void hold_still(HeldTogether& held) noexcept;

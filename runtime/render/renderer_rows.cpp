@@ -39,6 +39,9 @@ constexpr double holds_still = 0.05;
 // goes over from one to the other on so short a way that the force would step.
 constexpr double one_direction = 0.01;
 
+// The gain of what holds all of its direction, but for that.
+constexpr double holds_all = 1 / one_direction;
+
 // What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
 // hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
 // the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
@@ -184,25 +187,25 @@ Shaft Renderer::Unheld::of(const Shaft& way) const noexcept
 void Renderer::hold_still(HeldTogether& held) noexcept
 {
     const double way_m = length(held.way_m);
-    const auto gain = [](double holds) { return holds / (1 - (1 - one_direction) * holds); };
+    const auto gain = [](double holds) { return holds / (1 - (1 - one_direction) * holds); }; // up to holds_all
     Unheld by_all;
     for (Row* row : held.rows()) {
         row->held = Rise(row->contact.depth_m / (holds_still * way_m)).value;
         by_all.add(row->direction, gain(row->held));
-        held.unheld.add(row->direction, gain(1));
+        held.unheld.add(row->direction, holds_all);
     }
     for (Row* row : held.rows()) {
         const Shaft rest = by_all.of(row->direction),
                     left = 1 / (1 - gain(row->held) * dot(row->direction, rest)) * rest; // by the others
         const double square = dot(row->direction, left);
-        const Shaft depth_dp = -1 / square * left;
+        row->depth_dp = -1 / square * left;
         const double depth_m = row->contact.depth_m, q = depth_m / (holds_still * way_m);
         const Rise rise(q);
         row->still_m = depth_m * rise.value;
         row->still_dp =
-            holds_still * q * q * rise.slope / way_m * held.way_m + (rise.value + q * rise.slope) * depth_dp;
+            holds_still * q * q * rise.slope / way_m * held.way_m + (rise.value + q * rise.slope) * row->depth_dp;
         row->off_m = std::sqrt(square) * depth_m;
-        row->off_dp = std::sqrt(square) * depth_dp;
+        row->off_dp = std::sqrt(square) * row->depth_dp;
     }
 }
 
@@ -225,33 +228,62 @@ void Renderer::raise(Row& row, const HeldTogether& held) noexcept
     row.raised_m = row.felt_m - glm::dot(row.felt_normal, left_m);
     row.raised_dp = felt_by(row, row.felt_normal + row.felt_dp - left_m * row.normal_dp, held) -
                     held.unheld.of(row.felt_direction - row.direction);
-    if (!(row.raised_m < 0)) return;
-    const double left = std::max(0.0, 1 + row.off_m / row.raised_m);
-    row.on_m = -row.raised_m * (1 - left * left);
-    row.on_dp = 2 * left * row.off_dp - (left > 0 ? (1 - left) * (1 - left) : 1.0) * row.raised_dp;
 }
 
-// Where the others are lower than this row is, the probe may come to it before contact does: up to five times as deep
-// as they are it is lower, too, so that it begins without a step, and its force grows at most by 0.4 faster than its
-// depth. One end of a stylus comes to it by the other in so far as the shaft holds.
+// All places that the row leaves, of a probe that contact holds by that way.
+ShaftRow Renderer::plane_of(const Row& row, const Shaft& way_m) noexcept
+{
+    return {row.felt_normal, dot(row.felt_direction, way_m) + row.raised_m, row.contact.along};
+}
+
+// The gradient of how far `at_m` is below that plane, as that place stays.
+Shaft Renderer::below_dp(const Row& row, const Shaft& way_m, const Shaft& at_m, const HeldTogether& held) noexcept
+{
+    const double along = row.contact.along;
+    return held.unheld.of(row.felt_direction - row.direction) - row.felt_direction + row.raised_dp +
+           felt_by(row, (way_m - at_m).at(along) * row.normal_dp, held);
+}
+
+// Where the others hold the probe lower than this row is, it comes to it before contact does: up to five times as deep
+// as that it is lower, too, so that it begins without a step, and its force grows at most by 0.4 faster than its depth.
 void Renderer::ease_in(const HeldTogether& held) noexcept
 {
-    double turns = 0;
-    for (const Row* row : held.rows())
-        if (row->contact.by_shaft) turns = std::max(turns, row->held);
+    const double tolerance_m = exact_within * length(held.way_m);
     for (Row* row : held.rows()) {
-        double others_m = row->raised_m;
-        Shaft others_dp = row->raised_dp;
-        for (const Row* other : held.rows()) {
-            if (other == row) continue;
-            const double comes = std::fabs(other->contact.along - row->contact.along) == 1 ? turns : 1.0;
-            others_m += comes * other->on_m;
-            others_dp += comes * other->on_dp;
-        }
-        const double left = others_m > 0 ? 1 - row->off_m / (5 * others_m) : 0;
+        row->eased_m = 0;
+        row->eased_dp = {};
+        const Shaft way_m = held.way_m - row->contact.depth_m * row->direction; // by the others
+        std::array<ShaftRow, CreaseRows::rows_most> planes;
+        std::array<const Row*, CreaseRows::rows_most> others;
+        std::size_t count = 0;
+        for (const Row* other : held.rows())
+            if (other != row) {
+                others[count] = other;
+                planes[count++] = plane_of(*other, way_m);
+            }
+        const Projection<Shaft> at = project(std::span<const ShaftRow>(planes.data(), count), {}, tolerance_m);
+        const double below_m = dot(row->felt_direction, way_m - at.at) + row->raised_m,
+                     left = below_m > 0 ? 1 - row->off_m / (5 * below_m) : 0;
         if (left <= 0) continue;
-        row->raised_m -= others_m * left * left;
-        row->raised_dp -= (left * left + 2 * (1 - left) * left) * others_dp - 0.4 * left * row->off_dp;
+        // By the others' planes, of which the probe leaves those that do not hold it.
+        const auto changes = [&](const Row& of) {
+            return below_dp(of, way_m, at.at, held) - dot(of.felt_direction, row->direction) * row->depth_dp;
+        };
+        Shaft below = changes(*row);
+        Unheld unheld;
+        for (std::size_t i = 0; i < at.count; ++i) unheld.add(others[at.active[i]]->felt_direction, holds_all);
+        const Shaft rest = unheld.of(row->felt_direction);
+        for (std::size_t i = 0; i < at.count; ++i) {
+            const Row& other = *others[at.active[i]];
+            below -= holds_all * dot(rest, other.felt_direction) * changes(other) +
+                     felt_by(other, at.push[i] * (rest.at(other.contact.along) * other.normal_dp), held);
+        }
+        row->eased_m = below_m * left * left;
+        row->eased_dp = (left * left + 2 * (1 - left) * left) * below - 0.4 * left * row->off_dp;
+    }
+    for (Row* row : held.rows()) {
+        row->raised_m -= row->eased_m;
+        row->raised_dp -= row->eased_dp;
     }
 }
 
@@ -265,31 +297,26 @@ void Renderer::push_together(const HeldTogether& held) noexcept
     for (Row* row : held.rows()) raise(*row, held);
     std::array<double, CreaseRows::rows_most> push_m{};
     double told = 1;
-    Shaft more_m; // from there to the proxy
+    Shaft at_m = held.way_m;
     if (std::ranges::all_of(held.rows(), is_facet)) {
         for (std::size_t i = 0; i < held.count; ++i) push_m[i] = held.row[i]->contact.depth_m;
     } else {
         ease_in(held);
         std::array<ShaftRow, CreaseRows::rows_most> planes;
-        for (std::size_t i = 0; i < held.count; ++i) {
-            const Row& row = *held.row[i];
-            planes[i] = {row.felt_normal, dot(row.felt_direction, held.way_m) + row.raised_m, row.contact.along};
-        }
+        for (std::size_t i = 0; i < held.count; ++i) planes[i] = plane_of(*held.row[i], held.way_m);
         const Projection<Shaft> at =
             project(std::span<const ShaftRow>(planes.data(), held.count), {}, exact_within * way_m);
         double pushes_m = 0;
         for (std::size_t i = 0; i < at.count; ++i) pushes_m += push_m[at.active[i]] = at.push[i];
         told = std::min(1.0, opposed_most * length(at.at) / pushes_m);
-        more_m = held.way_m - at.at;
+        at_m = at.at;
     }
     for (std::size_t i = 0; i < held.count; ++i) {
         Row& row = *held.row[i];
         const double along = row.contact.along;
         ObjectForce& force = row.force;
-        const Shaft push_dp = row.felt_direction - held.unheld.of(row.felt_direction - row.direction) - row.raised_dp -
-                              felt_by(row, more_m.at(along) * row.normal_dp, held);
-        const Shaft more_n =
-            told * (force.felt_n_per_m * push_m[i] * push_dp - Shaft::pushed_at(along, row.share * force.spring_n));
+        const Shaft more_n = -told * (force.felt_n_per_m * push_m[i] * below_dp(row, held.way_m, at_m, held) +
+                                      Shaft::pushed_at(along, row.share * force.spring_n));
         row.at_ends_n = more_n;
         const glm::dvec3 here_n = row.contact.by_shaft ? more_n.tip + more_n.tail
                                   : along > 0          ? more_n.tail

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 using namespace haptel;
@@ -17,6 +18,16 @@ using namespace haptel::tests;
 using glm::dvec3;
 
 namespace {
+
+Scene joined_scene(const Mesh& first, const Mesh& second)
+{
+    Scene scene = bare_scene(first);
+    scene.objects.push_back(bare_scene(second).objects[0]);
+    const std::vector<PlacedSurface> placed{{scene.objects[0].surface, {}}, {scene.objects[1].surface, {}}};
+    const std::vector<uint32_t> numbers{0, 1};
+    scene.joined.push_back({join(placed, numbers).surface, numbers});
+    return scene;
+}
 
 // Two joined boxes with a gap of that angle, which widens along x from the y axis.
 Scene gap_scene(double angle, double below_n_per_m, double above_n_per_m)
@@ -28,13 +39,9 @@ Scene gap_scene(double angle, double below_n_per_m, double above_n_per_m)
         p = {std::cos(angle) * flat.x - std::sin(angle) * flat.z, flat.y,
              std::sin(angle) * flat.x + std::cos(angle) * flat.z};
     }
-    Scene scene = bare_scene(below);
-    scene.objects.push_back(bare_scene(above).objects[0]);
+    Scene scene = joined_scene(below, above);
     scene.objects[0].material.stiffness_n_per_m = below_n_per_m;
     scene.objects[1].material.stiffness_n_per_m = above_n_per_m;
-    const std::vector<PlacedSurface> placed{{scene.objects[0].surface, {}}, {scene.objects[1].surface, {}}};
-    const std::vector<uint32_t> numbers{0, 1};
-    scene.joined.push_back({join(placed, numbers).surface, numbers});
     return scene;
 }
 
@@ -84,6 +91,42 @@ TEST_CASE("in a rough groove of 60 degrees the force has no step where the hand 
         above += z > 0 && std::fabs(before.y) > 1; // friction holds it back
     }
     CHECK(above > 400);
+}
+
+// Where it comes to the wall, the ball's facets stand for another normal than they have, and for a place above them.
+TEST_CASE("where a probe comes to a wall on a ball of triangles the force has no step")
+{
+    constexpr double depth_m = 1e-3, step_m = 5e-7, wall_m = 0.01;
+    for (const double radius_m : {0.0, 2e-3}) {
+        Mesh wall = make_box({0.1, 0.12, 0.12});
+        for (dvec3& p : wall.positions_m) p.x += wall_m + 0.05;
+        Scene scene = joined_scene(ball_mesh(3, 0.1), wall);
+        if (radius_m > 0) scene.probe = ProbeSettings{ProbeKind::sphere, 0.15, radius_m};
+        const auto touched = shared(std::move(scene));
+        std::mt19937_64 random(5);
+        for (int i = 0; i < 20; ++i) {
+            const double y = std::uniform_real_distribution<double>(-0.03, 0.03)(random),
+                         distance_m = 0.0495 - depth_m + radius_m; // the facets are up to half a millimetre lower
+            Renderer renderer(touched);
+            renderer.tick(at(0, y, 0.08));
+            dvec3 hand(0), before(0);
+            double most_n_per_m = 0;
+            bool met = false;
+            for (double x = wall_m - radius_m - 1e-3; x < wall_m - radius_m + 3e-4; x += step_m) {
+                const dvec3 next(x, y, std::sqrt(distance_m * distance_m - x * x - y * y));
+                const TickResult tick = renderer.tick({next, next});
+                if (hand != dvec3(0))
+                    most_n_per_m = std::fmax(most_n_per_m,
+                                             glm::distance(tick.unlimited_force_n, before) / glm::distance(next, hand));
+                hand = next;
+                before = tick.unlimited_force_n;
+                met = met || tick.contacts == 2;
+            }
+            CAPTURE(radius_m, y);
+            CHECK(met);
+            CHECK(most_n_per_m < 3 * spring_n_per_m);
+        }
+    }
 }
 
 TEST_CASE("a texture in a narrow groove acts by a few times the way of the ball, not by its walls' pushes")
