@@ -51,8 +51,11 @@ struct Contact {
     glm::dvec3 facet_normal{0, 0, 1}; // of the face, unit, toward the free side
     // Unit, toward the free side: the facet's on a face, between those of the faces that meet on an edge or a vertex.
     glm::dvec3 normal{0, 0, 1};
-    double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
-    double pressed_m = 0;  // what friction bears by: the depth, but in a groove that below both its walls together
+    double depth_m = 0;   // >= 0: how deep the hand is below the proxy along `normal`
+    double pressed_m = 0; // what friction bears by: the depth, but in a groove that below both its walls together
+    // Of the ball that touches, whose centre is so far from the place along `normal`: less than the probe's while one
+    // that was put down into something has no room to grow. 0: of what touches with a point.
+    double radius_m = 0;
     double along = 0;      // of a stylus or a gripper: where it touches, 0 at its tip, 1 at its tail
     bool by_shaft = false; // of a stylus: between its ends, on an edge
     // Of a stylus, together with `by_shaft`: the part of its force that no contact accounts for, in a tick in which the

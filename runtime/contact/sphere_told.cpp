@@ -122,6 +122,7 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
         contact.barycentric = point.barycentric;
         contact.proxy_m = surface_->lattice.metres(point.at);
         contact.hand_m = surface_->lattice.metres(hand_);
+        contact.radius_m = is_point_ ? 0.0 : grown_ * surface_->lattice.unit_m;
         contact.depth_m = contact.pressed_m = push * surface_->lattice.unit_m;
         contact.lag_m = sum > 0 ? push / sum * lag_m : glm::dvec3(0);
         if (kept < 1) { // walls that push against each other: the sum stays

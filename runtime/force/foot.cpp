@@ -219,8 +219,8 @@ Foot flat_foot(const Surface& surface, const Contact& contact) noexcept
 namespace {
 
 // False where nothing of it is felt.
-bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, double held_above_m,
-               FacetLines& lines, Foot& foot) noexcept
+bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, FacetLines& lines,
+               Foot& foot) noexcept
 {
     uint32_t face = contact.face, side = contact.side;
     OnLine at;
@@ -239,7 +239,7 @@ bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand
         if (!(least > -beyond_most) || !(length > Surface::least_normal) || !((side ? -open : open) > 0)) return false;
         find_share(lines, at, least, length, foot);
         if (foot.share == 0) return false;
-        find_depth(lines, at, length, held_above_m, foot);
+        find_depth(lines, at, length, contact.radius_m, foot);
         foot.way = foot.normal = at.normal / length;
         foot.normal_length = length;
         find_place(lines, at.b, beyond, foot);
@@ -257,11 +257,10 @@ Foot paper_foot(const Surface& surface, const Contact& contact) noexcept
     return foot;
 }
 
-Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, double held_above_m,
-                 FacetLines& last) noexcept
+Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, FacetLines& last) noexcept
 {
     Foot foot;
-    if (!find_foot(surface, contact, hand_m, held_above_m, last, foot)) {
+    if (!find_foot(surface, contact, hand_m, last, foot)) {
         foot = flat_foot(surface, contact);
         foot.share = 0;
     }

@@ -70,17 +70,15 @@ Foot flat_foot(const Surface& surface, const Contact& contact) noexcept;
 // The same with equation (1) of the paper: the normal between the corners' is the direction of the force.
 Foot paper_foot(const Surface& surface, const Contact& contact) noexcept;
 
-// Straight below a contact, so deep as that says. `held_above_m`: of the hand above the probe's rim, the radius of a
-// ball.
-inline glm::dvec3 hand_below(const Contact& contact, double held_above_m)
+// Straight below a contact, so deep as that says.
+inline glm::dvec3 hand_below(const Contact& contact)
 {
-    return contact.proxy_m + (held_above_m - contact.depth_m) * contact.normal;
+    return contact.proxy_m + (contact.radius_m - contact.depth_m) * contact.normal;
 }
 
 // On the smooth surface, of a hand near `contact`. `last`: the facet of the tick before on the same surface, which is
 // mostly that of this one. Nothing of it is felt (share 0) where there is none.
-Foot smooth_foot(const Surface& surface, const Contact& contact, const glm::dvec3& hand_m, double held_above_m,
-                 FacetLines& last) noexcept;
+Foot smooth_foot(const Surface& surface, const Contact& contact, const glm::dvec3& hand_m, FacetLines& last) noexcept;
 
 // 1/m: how the normal of a smooth foot on that facet turns with the hand's place.
 glm::dmat3 turning(const FacetLines& lines, const Foot& foot) noexcept;

@@ -122,10 +122,9 @@ Foot Renderer::foot_of(Touched& touched, const Contact& contact) const noexcept
     const bool curved =
         surface.normal_turn_max_per_m > 0 && contact.touching && !contact.on_crease && !contact.unsettled;
     const bool smooth = curved && is_smooth(surface);
-    Foot foot =
-        smooth   ? smooth_foot(surface, contact, hand_below(contact, probe_.radius_m), probe_.radius_m, touched.lines)
-        : curved ? paper_foot(surface, contact)
-                 : flat_foot(surface, contact);
+    Foot foot = smooth   ? smooth_foot(surface, contact, hand_below(contact), touched.lines)
+                : curved ? paper_foot(surface, contact)
+                         : flat_foot(surface, contact);
     if (foot.share == 0) foot.share = 1; // the flat one
     return foot;
 }

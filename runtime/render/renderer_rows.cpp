@@ -121,7 +121,7 @@ std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Con
             for (const Contact& contact : contacts)
                 way_m += contact.depth_m * Shaft::pushed_at(contact.along, contact.normal);
             if (body.objects.joined) way_m = in_object(body.placement_of(*touched.object), way_m);
-            of_part = smooth_rows_.of(*touched.object->surface, of_part, way_m, probe_.radius_m, touched.lines);
+            of_part = smooth_rows_.of(*touched.object->surface, of_part, way_m, touched.lines);
         }
         for (const Contact& contact : of_part.first(std::min(of_part.size(), rows_.size() - count)))
             rows_[count++] = {.part = part.part,

@@ -22,30 +22,30 @@ bool are_one(const Foot& a, const Foot& b)
 }
 
 // The sum of both, held off the same place.
-void add(Contact& row, const Contact& contact, double held_above_m)
+void add(Contact& row, const Contact& contact)
 {
     const glm::dvec3 groove = glm::cross(row.normal, contact.normal);
     const double sine = glm::length(groove);
-    const glm::dvec3 centre_m = row.proxy_m + held_above_m * row.normal;
+    const glm::dvec3 centre_m = row.proxy_m + row.radius_m * row.normal;
     const glm::dvec3 way_m = row.depth_m * row.normal + contact.depth_m * contact.normal;
     const double depth_m = glm::length(way_m);
     if (!(depth_m > 0)) return;
     row.normal = way_m / depth_m;
     row.depth_m = depth_m;
     row.lag_m += contact.lag_m;
-    row.proxy_m = centre_m - held_above_m * row.normal;
+    row.proxy_m = centre_m - row.radius_m * row.normal;
     if (row.rolls < 0 && sine < one_direction) return; // as one facet
     if (row.rolls < 0)
         row.groove = groove / sine;
     else if (std::fabs(glm::dot(row.groove, contact.normal)) > one_direction)
         row.groove = glm::dvec3(0); // a third one ends it
-    row.rolls = held_above_m / depth_m;
+    row.rolls = row.radius_m / depth_m;
 }
 
 } // namespace
 
 std::span<const Contact> SmoothRows::of(const Surface& surface, std::span<const Contact> contacts, const Shaft& way_m,
-                                        double held_above_m, FacetLines& lines) noexcept
+                                        FacetLines& lines) noexcept
 {
     std::array<Foot, CreaseRows::rows_most> feet;
     // The first at each end: a point that is held as a ball touches all of them a little apart.
@@ -57,13 +57,13 @@ std::span<const Contact> SmoothRows::of(const Surface& surface, std::span<const 
         if (!contact.by_shaft && !contact.unsettled && !contact.on_crease) {
             const Contact*& end = first[contact.along > 0];
             if (!end) end = &contact;
-            const glm::dvec3 centre_m = end->proxy_m + held_above_m * end->normal;
-            foot = smooth_foot(surface, contact, centre_m - way_m.at(contact.along), held_above_m, lines);
+            const glm::dvec3 centre_m = end->proxy_m + end->radius_m * end->normal;
+            foot = smooth_foot(surface, contact, centre_m - way_m.at(contact.along), lines);
         }
         std::size_t same = 0;
         while (same < count && !(rows_[same].along == contact.along && are_one(feet[same], foot))) ++same;
         if (same < count)
-            add(rows_[same], contact, held_above_m);
+            add(rows_[same], contact);
         else
             rows_[count++] = contact;
     }

@@ -19,7 +19,7 @@ public:
     // Of one object, in its space. `way_m`: from the hand to the proxy by all that holds the probe. Valid until the
     // next call.
     std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts, const Shaft& way_m,
-                                double held_above_m, FacetLines& lines) noexcept;
+                                FacetLines& lines) noexcept;
 
 private:
     std::array<Contact, CreaseRows::rows_most> rows_;

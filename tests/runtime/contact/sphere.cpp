@@ -276,11 +276,29 @@ TEST_CASE("a ball put down into something does not jump out of it, and is whole 
     SphereContact contact(surface_of(make_plane(3)), r);
     CHECK(contact.update({0, 0, 0.01}).empty());
     CHECK(contact.update({0, 0, 0.01}).empty()); // no push
-    CHECK(contact.update({0.1, 0, 0.008}).size() == 1);
+    const auto inside = contact.update({0.1, 0, 0.008});
+    REQUIRE(inside.size() == 1);
+    CHECK(std::abs(inside[0].radius_m - 0.01) < 1e-9); // as large as it has room
     CHECK(contact.update({0.1, 0, 0.3}).empty());
     const auto touched = contact.update({0.1, 0, 0.04});
     REQUIRE(touched.size() == 1);
     CHECK(std::abs(touched[0].depth_m - 0.01) < 1e-9);
+    CHECK(std::abs(touched[0].radius_m - r) < 1e-12);
+}
+
+TEST_CASE("a ball put down between walls tells by each of them the same centre and how large it is")
+{
+    Mesh valley; // z = |x|
+    valley.positions_m = {{-1, -1, 1}, {-1, 1, 1}, {0, -1, 0}, {0, 1, 0}, {1, -1, 1}, {1, 1, 1}};
+    valley.triangles = {{0, 2, 3}, {0, 3, 1}, {2, 4, 5}, {2, 5, 3}};
+    SphereContact contact(surface_of(valley), 0.05);
+    contact.update({0, 0.1, 0.02});
+    const auto touched = contact.update({0.001, 0.1, 0.018});
+    REQUIRE(touched.size() == 2);
+    for (const Contact& wall : touched) {
+        CHECK(std::abs(wall.radius_m - 0.02 * std::sqrt(0.5)) < 1e-8);
+        CHECK(glm::distance(wall.proxy_m + wall.radius_m * wall.normal, contact.proxy_m()) < 1e-8);
+    }
 }
 
 TEST_CASE("a ball's pose that is not a number holds the contact, and equal poses give equal bits")

@@ -37,7 +37,7 @@ public:
         contact_.tick(hand_m, {});
         const Contact& contact = contact_.contact();
         if (!contact.touching || contact.depth_m == 0) return std::nullopt;
-        const Foot foot = smooth_foot(contact_.surface(), contact, hand_below(contact, 0), 0, lines_);
+        const Foot foot = smooth_foot(contact_.surface(), contact, hand_below(contact), lines_);
         return foot.share > 0 ? std::optional(foot) : std::nullopt;
     }
 
@@ -129,10 +129,10 @@ TEST_CASE("beyond borders and corners of an open surface a foot says of its chan
                              4e-3 * dvec3(uniform(random), uniform(random), uniform(random));
         const auto foot_of = [&](const dvec3& hand) {
             FacetLines lines;
-            return smooth_foot(*surface, contact, hand, 0, lines);
+            return smooth_foot(*surface, contact, hand, lines);
         };
         FacetLines lines;
-        const Foot here = smooth_foot(*surface, contact, hand_m, 0, lines);
+        const Foot here = smooth_foot(*surface, contact, hand_m, lines);
         const int borders = static_cast<int>(here.barycentric.x == 0) + static_cast<int>(here.barycentric.y == 0) +
                             static_cast<int>(here.barycentric.z == 0);
         if (here.share == 0 || borders == 0) continue;
