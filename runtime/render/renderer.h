@@ -166,7 +166,7 @@ private:
         Shaft felt_direction{};
         double raised_m = 0; // along it: how far the proxy is below what is felt, mostly less than 0
         Shaft raised_dp{};
-        double eased_m = 0; // less of that while contact has begun
+        double eased_m = 0; // that is less by so much while contact begins
         Shaft eased_dp{};
         Shaft at_ends_n{}; // felt there besides `force`
         ObjectForce force{};
@@ -202,8 +202,7 @@ private:
     struct HeldTogether {
         std::array<Row*, CreaseRows::rows_most> row;
         std::size_t count = 0;
-        Shaft way_m;   // from the hand to the proxy
-        Unheld unheld; // of a way of the hand: the proxy goes it
+        Shaft way_m; // from the hand to the proxy
 
         HeldTogether() noexcept {} // of the arrays nothing is set to 0
         std::span<Row* const> rows() const { return {row.data(), count}; }

@@ -39,9 +39,6 @@ constexpr double holds_still = 0.05;
 // goes over from one to the other on so short a way that the force would step.
 constexpr double one_direction = 0.01;
 
-// The gain of what holds all of its direction, but for that.
-constexpr double holds_all = 1 / one_direction;
-
 // What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
 // hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
 // the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
@@ -187,12 +184,11 @@ Shaft Renderer::Unheld::of(const Shaft& way) const noexcept
 void Renderer::hold_still(HeldTogether& held) noexcept
 {
     const double way_m = length(held.way_m);
-    const auto gain = [](double holds) { return holds / (1 - (1 - one_direction) * holds); }; // up to holds_all
+    const auto gain = [](double holds) { return holds / (1 - (1 - one_direction) * holds); };
     Unheld by_all;
     for (Row* row : held.rows()) {
         row->held = Rise(row->contact.depth_m / (holds_still * way_m)).value;
         by_all.add(row->direction, gain(row->held));
-        held.unheld.add(row->direction, holds_all);
     }
     for (Row* row : held.rows()) {
         const Shaft rest = by_all.of(row->direction),
@@ -219,15 +215,15 @@ Shaft Renderer::felt_by(const Row& row, const glm::dvec3& by_place, const HeldTo
     return felt;
 }
 
-// How far the proxy is below what is felt on a row, mostly less than 0, and how that changes with the hand's place.
+// How far the proxy is below what is felt on a row, mostly less than 0, and how that changes with the hand's place, as
+// the proxy stays.
 void Renderer::raise(Row& row, const HeldTogether& held) noexcept
 {
     glm::dvec3 left_m = held.way_m.at(row.contact.along); // from where it is felt to the proxy
     for (const Row* other : held.rows())
         if (other != &row) left_m -= other->still_m * other->way_of(row);
     row.raised_m = row.felt_m - glm::dot(row.felt_normal, left_m);
-    row.raised_dp = felt_by(row, row.felt_normal + row.felt_dp - left_m * row.normal_dp, held) -
-                    held.unheld.of(row.felt_direction - row.direction);
+    row.raised_dp = felt_by(row, row.felt_normal + row.felt_dp - left_m * row.normal_dp, held);
 }
 
 // All places that the row leaves, of a probe that contact holds by that way.
@@ -240,46 +236,49 @@ ShaftRow Renderer::plane_of(const Row& row, const Shaft& way_m) noexcept
 Shaft Renderer::below_dp(const Row& row, const Shaft& way_m, const Shaft& at_m, const HeldTogether& held) noexcept
 {
     const double along = row.contact.along;
-    return held.unheld.of(row.felt_direction - row.direction) - row.felt_direction + row.raised_dp +
-           felt_by(row, (way_m - at_m).at(along) * row.normal_dp, held);
+    return row.raised_dp - row.felt_direction + felt_by(row, (way_m - at_m).at(along) * row.normal_dp, held);
 }
 
 // Where the others hold the probe lower than this row is, it comes to it before contact does: up to five times as deep
-// as that it is lower, too, so that it begins without a step, and its force grows at most by 0.4 faster than its depth.
+// as this row would hold it farther, by the way that is longer then, its plane is lower by that, so that it begins
+// without a step.
 void Renderer::ease_in(const HeldTogether& held) noexcept
 {
     const double tolerance_m = exact_within * length(held.way_m);
     for (Row* row : held.rows()) {
         row->eased_m = 0;
         row->eased_dp = {};
-        const Shaft way_m = held.way_m - row->contact.depth_m * row->direction; // by the others
+        // What a hand so far on as this row pushes would be held by.
+        const Shaft way_m = held.way_m - row->contact.depth_m * row->direction;
         std::array<ShaftRow, CreaseRows::rows_most> planes;
-        std::array<const Row*, CreaseRows::rows_most> others;
+        std::array<const Row*, CreaseRows::rows_most> of;
         std::size_t count = 0;
         for (const Row* other : held.rows())
-            if (other != row) {
-                others[count] = other;
-                planes[count++] = plane_of(*other, way_m);
-            }
-        const Projection<Shaft> at = project(std::span<const ShaftRow>(planes.data(), count), {}, tolerance_m);
-        const double below_m = dot(row->felt_direction, way_m - at.at) + row->raised_m,
-                     left = below_m > 0 ? 1 - row->off_m / (5 * below_m) : 0;
-        if (left <= 0) continue;
-        // By the others' planes, of which the probe leaves those that do not hold it.
-        const auto changes = [&](const Row& of) {
-            return below_dp(of, way_m, at.at, held) - dot(of.felt_direction, row->direction) * row->depth_dp;
+            if (other != row) of[count++] = other;
+        of[count] = row;
+        for (std::size_t i = 0; i <= count; ++i) planes[i] = plane_of(*of[i], way_m);
+        const auto held_by = [&](std::size_t first) {
+            return project(std::span<const ShaftRow>(planes.data(), first), {}, tolerance_m);
         };
-        Shaft below = changes(*row);
-        Unheld unheld;
-        for (std::size_t i = 0; i < at.count; ++i) unheld.add(others[at.active[i]]->felt_direction, holds_all);
-        const Shaft rest = unheld.of(row->felt_direction);
-        for (std::size_t i = 0; i < at.count; ++i) {
-            const Row& other = *others[at.active[i]];
-            below -= holds_all * dot(rest, other.felt_direction) * changes(other) +
-                     felt_by(other, at.push[i] * (rest.at(other.contact.along) * other.normal_dp), held);
-        }
-        row->eased_m = below_m * left * left;
-        row->eased_dp = (left * left + 2 * (1 - left) * left) * below - 0.4 * left * row->off_dp;
+        const Projection<Shaft> others = held_by(count);
+        if (dot(row->felt_direction, way_m - others.at) + row->raised_m <= tolerance_m) continue;
+        const Projection<Shaft> all = held_by(count + 1);
+        const double more_m = std::sqrt(std::max(0.0, dot(all.at, all.at) - dot(others.at, others.at))),
+                     left = more_m > tolerance_m ? 1 - row->off_m / (5 * more_m) : 0;
+        if (left <= 0) continue;
+        Shaft more_dp; // times more_m
+        const auto add = [&](const Projection<Shaft>& at, double sign) {
+            for (std::size_t i = 0; i < at.count; ++i) {
+                const Row& active = *of[at.active[i]];
+                more_dp +=
+                    sign * at.push[i] *
+                    (below_dp(active, way_m, at.at, held) - dot(active.felt_direction, row->direction) * row->depth_dp);
+            }
+        };
+        add(all, 1);
+        add(others, -1);
+        row->eased_m = more_m * left * left;
+        row->eased_dp = (left * left + 2 * (1 - left) * left) / more_m * more_dp - 0.4 * left * row->off_dp;
     }
     for (Row* row : held.rows()) {
         row->raised_m -= row->eased_m;

@@ -129,6 +129,39 @@ TEST_CASE("where a probe comes to a wall on a ball of triangles the force has no
     }
 }
 
+TEST_CASE("in a corner of a bare wall and a textured one the force has no step where the texture begins to be felt")
+{
+    constexpr double angle = 2.094, high_m = 1e-4, step_m = high_m / 4000;
+    const auto sunk = [](const haptel_point&, haptel_sample& sample) { sample.height_m = -high_m; };
+    for (const int textured : {0, 1}) {
+        Scene scene = gap_scene(angle, 1000, 1000);
+        scene.objects[textured].texture = std::make_shared<TextureSlot>(sample_lambda(sunk, -high_m, 0));
+        const auto touched = shared(std::move(scene));
+        const dvec3 below(0, 0, 1), above(std::sin(angle), 0, -std::cos(angle));
+        for (const double bare_m : {0.1, 0.3, 0.7, 1.0, 1.4, 2.0}) {
+            Renderer renderer(touched);
+            renderer.tick({below + above, below + above});
+            dvec3 hand(0), before(0);
+            double most_n_per_m = 0;
+            int both = 0;
+            for (double depth_m = 0; depth_m < 2 * high_m; depth_m += step_m) {
+                const dvec3 next =
+                    -(textured ? bare_m * high_m : depth_m) * below - (textured ? depth_m : bare_m * high_m) * above;
+                const TickResult tick = renderer.tick({next, next});
+                if (depth_m > 10 * step_m)
+                    most_n_per_m = std::fmax(most_n_per_m,
+                                             glm::distance(tick.unlimited_force_n, before) / glm::distance(next, hand));
+                hand = next;
+                before = tick.unlimited_force_n;
+                both += tick.contacts == 2;
+            }
+            CAPTURE(textured, bare_m);
+            CHECK(both > 7000);
+            CHECK(most_n_per_m < 6 * spring_n_per_m);
+        }
+    }
+}
+
 TEST_CASE("a texture in a narrow groove acts by a few times the way of the ball, not by its walls' pushes")
 {
     constexpr double angle = 0.03, radius_m = 1e-3, length_m = 0.12, amplitude_m = 1e-4, per_m = 600;
