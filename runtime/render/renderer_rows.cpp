@@ -39,6 +39,10 @@ constexpr double holds_still = 0.05;
 // goes over from one to the other on so short a way that the force would step.
 constexpr double one_direction = 0.01;
 
+// A row is eased in until it is so many times as deep as it would begin too early: while that stays, its force grows by
+// at most 2 / 5 faster than its depth.
+constexpr double eased_over = 5;
+
 // What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
 // hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
 // the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
@@ -239,16 +243,16 @@ Shaft Renderer::below_dp(const Row& row, const Shaft& way_m, const Shaft& at_m, 
     return row.raised_dp - row.felt_direction + felt_by(row, (way_m - at_m).at(along) * row.normal_dp, held);
 }
 
-// Where the others hold the probe lower than this row is, it comes to it before contact does: up to five times as deep
-// as this row would hold it farther, by the way that is longer then, its plane is lower by that, so that it begins
-// without a step.
+// Where the others hold the probe lower than this row is, it comes to it before contact does, and the row would begin
+// with a step. So its plane is lower at first, by what it adds to the way: the root of what it adds to the square, of
+// which the gradient does not step where others begin to push.
 void Renderer::ease_in(const HeldTogether& held) noexcept
 {
     const double tolerance_m = exact_within * length(held.way_m);
     for (Row* row : held.rows()) {
         row->eased_m = 0;
         row->eased_dp = {};
-        // What a hand so far on as this row pushes would be held by.
+        // Of a hand that is farther on by this row's push: as where it begins.
         const Shaft way_m = held.way_m - row->contact.depth_m * row->direction;
         std::array<ShaftRow, CreaseRows::rows_most> planes;
         std::array<const Row*, CreaseRows::rows_most> of;
@@ -264,7 +268,7 @@ void Renderer::ease_in(const HeldTogether& held) noexcept
         if (dot(row->felt_direction, way_m - others.at) + row->raised_m <= tolerance_m) continue;
         const Projection<Shaft> all = held_by(count + 1);
         const double more_m = std::sqrt(std::max(0.0, dot(all.at, all.at) - dot(others.at, others.at))),
-                     left = more_m > tolerance_m ? 1 - row->off_m / (5 * more_m) : 0;
+                     left = more_m > tolerance_m ? 1 - row->off_m / (eased_over * more_m) : 0;
         if (left <= 0) continue;
         Shaft more_dp; // times more_m
         const auto add = [&](const Projection<Shaft>& at, double sign) {
@@ -278,7 +282,7 @@ void Renderer::ease_in(const HeldTogether& held) noexcept
         add(all, 1);
         add(others, -1);
         row->eased_m = more_m * left * left;
-        row->eased_dp = (left * left + 2 * (1 - left) * left) / more_m * more_dp - 0.4 * left * row->off_dp;
+        row->eased_dp = (left * left + 2 * (1 - left) * left) / more_m * more_dp - 2 / eased_over * left * row->off_dp;
     }
     for (Row* row : held.rows()) {
         row->raised_m -= row->eased_m;

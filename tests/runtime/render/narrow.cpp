@@ -1,6 +1,7 @@
 // Walls of a narrow groove push against each other by the way of the hand over the sine of the angle between them. By
 // what is left of it, stiffnesses and textures apart, the hand is pushed by no more than a few times its spring's pull.
-// And a ball on the border of an open mesh, where there is one wall of no thickness.
+// Where a probe comes to a wall besides what holds it, the force does not step. And a ball on the border of an open
+// mesh, where there is one wall of no thickness.
 #include "runtime/render/renderer.h"
 #include "runtime/surface/build/joined_surfaces.h"
 #include "tests/support/catch.h"
