@@ -31,13 +31,15 @@ RepeatedTicks::RepeatedTicks(const std::shared_ptr<const Scene>& scene, int pass
     }
 }
 
-void RepeatedTicks::turn(int first, int end, double clock_ns, const Place& place, const Look& look)
+void RepeatedTicks::turn(int first, int end, const Place& place, const Look& look)
 {
     using Clock = std::chrono::steady_clock;
+    double clock_ns = 0;
     const auto ns = [&](Clock::time_point from, Clock::time_point to) {
         return std::max(0.0, std::chrono::duration<double, std::nano>(to - from).count() - clock_ns);
     };
-    for (auto& pass : passes_)
+    for (auto& pass : passes_) {
+        clock_ns = clock_reading_ns();
         for (int number = first; number < end; ++number) {
             const glm::dvec3 hand_m = place(number);
             const ContactWork before = pass->work();
@@ -49,12 +51,13 @@ void RepeatedTicks::turn(int first, int end, double clock_ns, const Place& place
             if (pass == passes_.front()) {
                 least_ns_.push_back(took);
                 once_ns_.push_back(took);
-                look({felt, difference(pass->work(), before), ahead, hand_m});
+                look({felt, difference(pass->work(), before), ahead, hand_m, clock_ns});
             } else {
                 double& least = least_ns_[static_cast<std::size_t>(number)];
                 least = std::min(least, took);
             }
         }
+    }
 }
 
 } // namespace haptel::bench

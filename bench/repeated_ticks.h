@@ -20,6 +20,7 @@ struct TickLook {
     runtime::ContactWork work;
     double ahead_ns; // that bringing into the cache what the next may need took
     glm::dvec3 hand_m;
+    double clock_ns; // what reading the clock added to a time
 };
 
 class RepeatedTicks {
@@ -31,7 +32,7 @@ public:
     RepeatedTicks(const std::shared_ptr<const runtime::Scene>& scene, int passes, const glm::dvec3& start_m);
 
     // One pass after the other. `look`: after each tick of the first pass; what it does is not timed.
-    void turn(int first, int end, double clock_ns, const Place& place, const Look& look);
+    void turn(int first, int end, const Place& place, const Look& look);
 
     Times least_ns() const { return summary(least_ns_); }
     Times once_ns() const { return summary(once_ns_); } // of the first pass alone

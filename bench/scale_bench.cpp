@@ -47,10 +47,10 @@ public:
         row_.objects = scene->objects.size();
     }
 
-    void turn(int first, int end, double clock_ns)
+    void turn(int first, int end)
     {
         ticks_.turn(
-            first, end, clock_ns, [&](int tick) { return place_on_stroke(tick, offset_m_); },
+            first, end, [&](int tick) { return place_on_stroke(tick, offset_m_); },
             [&](const TickLook& look) { contacts_ += look.felt.contacts; });
     }
 
@@ -72,11 +72,10 @@ private:
 
 void stroke(std::vector<std::unique_ptr<Rendered>>& rows, int ticks, const std::function<void(double)>& progress)
 {
-    const double clock = clock_reading_ns();
     constexpr int turn = 5000; // ticks of one row before the next: caches are warm, as in a servo
     for (int first = 0; first < ticks; first += turn)
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            rows[i]->turn(first, first + turn, clock);
+            rows[i]->turn(first, first + turn);
             progress((first + turn * static_cast<double>(i + 1) / static_cast<double>(rows.size())) / ticks);
         }
 }

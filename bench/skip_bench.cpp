@@ -69,10 +69,11 @@ public:
     }
 
     // Of ticks among a thousand objects that are all looked at a tenth is enough.
-    void ticks(int first, int count, double clock_ns)
+    void ticks(int first, int count)
     {
         if (heavy_) first /= 10, count /= 10;
         forces_n_.clear();
+        const double clock_ns = clock_reading_ns();
         for (int i = first; i < first + count; ++i) forces_n_.push_back(tick(with_, i, clock_ns, with_ns_));
         for (int i = first; i < first + count; ++i) {
             const glm::dvec3 force_n = tick(without_, i, clock_ns, without_ns_);
@@ -168,11 +169,10 @@ std::vector<SkipRow> bench_skip(bool quick, const std::function<void(double)>& p
     for (const Kind& kind : kinds) rows_made.push_back(std::make_unique<Compared>(kind, surface));
 
     const int ticks = quick ? 20'000 : 100'000;
-    const double clock = clock_reading_ns();
     constexpr int turn = 5000; // ticks of one row before the next: caches are warm, as in a servo
     for (int first = 0; first < ticks; first += turn)
         for (std::size_t i = 0; i < rows_made.size(); ++i) {
-            rows_made[i]->ticks(first, turn, clock);
+            rows_made[i]->ticks(first, turn);
             progress((first + turn * static_cast<double>(i + 1) / static_cast<double>(rows_made.size())) / ticks);
         }
     std::vector<SkipRow> rows;

@@ -36,11 +36,11 @@ public:
         row_.triangles = surface->faces.size();
     }
 
-    void turn(int first, int end, double clock_ns)
+    void turn(int first, int end)
     {
         ticks_.turn(
-            first, end, clock_ns, [&](int tick) { return place(tick, kind_.height_m); },
-            [&](const TickLook& look) { take_in(look, clock_ns); });
+            first, end, [&](int tick) { return place(tick, kind_.height_m); },
+            [&](const TickLook& look) { take_in(look); });
     }
 
     TickRow row() const
@@ -58,7 +58,7 @@ public:
     }
 
 private:
-    void take_in(const TickLook& look, double clock_ns)
+    void take_in(const TickLook& look)
     {
         const auto begin = std::chrono::steady_clock::now();
         const auto hit = surface_->first_hit(before_, look.hand_m);
@@ -68,7 +68,8 @@ private:
         touching_ += look.felt.contacts > 0;
         const uint64_t stepped = look.work.triangles + look.work.steps;
         ahead_ns_.push_back(look.ahead_ns);
-        tree_ns_.push_back(std::max(0.0, std::chrono::duration<double, std::nano>(walked - begin).count() - clock_ns));
+        tree_ns_.push_back(
+            std::max(0.0, std::chrono::duration<double, std::nano>(walked - begin).count() - look.clock_ns));
         queries_.push_back(static_cast<double>(look.work.queries));
         stepped_.push_back(static_cast<double>(stepped));
         touched_.push_back(static_cast<double>(stepped + look.work.read_ahead));
@@ -109,11 +110,10 @@ std::vector<TickRow> bench_tick(bool quick, const std::function<void(double)>& p
     for (const uint64_t objects : {uint64_t{30}, uint64_t{1000}})
         all.emplace_back(textured, middle, objects, texture, passes);
 
-    const double clock = clock_reading_ns();
     constexpr int turn = 5000; // ticks of one row before the next: caches are warm, as in a servo
     for (int first = 0; first < ticks; first += turn) {
         progress(static_cast<double>(first) / ticks);
-        for (Rendered& row : all) row.turn(first, first + turn, clock);
+        for (Rendered& row : all) row.turn(first, first + turn);
     }
     progress(1);
     std::vector<TickRow> rows;

@@ -17,7 +17,7 @@ double milliseconds(const std::function<void()>& work); // as the clock on the w
 double processor_milliseconds(const std::function<void()>& work);
 Times summary(std::vector<double> times);
 
-// What reading the clock once adds to a time measured between two readings.
+// What reading the clock once adds at least to a time measured between two readings, now: a machine's speed changes.
 double clock_reading_ns();
 
 } // namespace haptel::bench

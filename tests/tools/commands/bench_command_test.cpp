@@ -34,8 +34,8 @@ TEST_CASE("bench tick: what a tick looks at does not grow with the mesh or the s
     int faster = 0;
     for (const Json& row : json["rows"]) {
         CAPTURE(row["scene"].get<std::string>(), row["triangles"].get<int>(), row["objects"].get<int>());
-        CHECK(row["tick_ns"]["median"].get<double>() > 0);
-        CHECK(row["tree_ns"]["median"].get<double>() > 0);
+        CHECK(row["tick_ns"]["p99"].get<double>() > 0); // a median of some may be less than a clock can tell
+        CHECK(row["tree_ns"]["p99"].get<double>() > 0);
         for (const char* figure : {"median", "p99", "p999"}) // the least of several runs
             CHECK(row["tick_ns"][figure].get<double>() <= row["once_ns"][figure].get<double>());
         faster += row["tick_ns"]["p99"].get<double>() < row["once_ns"]["p99"].get<double>();
