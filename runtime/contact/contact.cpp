@@ -5,13 +5,6 @@
 
 namespace haptel::runtime {
 
-WalkFriction checked(const Friction& friction) noexcept
-{
-    const auto coefficient = [](double mu) { return mu > 0 && std::isfinite(mu) ? mu : 0.0; };
-    const double rest = coefficient(friction.static_coefficient);
-    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest), friction.grain};
-}
-
 bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const WalkFriction& friction) noexcept
 {
     glm::dvec3 push_m(0), lag_m(0);

@@ -5,6 +5,8 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -18,7 +20,12 @@ struct Friction {
 
     bool operator==(const Friction&) const = default;
 };
-WalkFriction checked(const Friction& friction) noexcept;
+inline WalkFriction checked(const Friction& friction) noexcept
+{
+    const auto coefficient = [](double mu) { return mu > 0 && std::isfinite(mu) ? mu : 0.0; };
+    const double rest = coefficient(friction.static_coefficient);
+    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest), friction.grain};
+}
 
 // Of what dynamic friction holds: below this share what slid sticks again.
 inline constexpr double sticks_again = 0.5;

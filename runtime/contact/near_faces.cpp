@@ -184,29 +184,43 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
     }
     near_ = radius + reach + distance_rounding;
     screened_ = screened == Screened::yes;
+    place_of_.clear();
     const std::size_t known = planes_.size();
-    place_of_.resize(known);
-    std::size_t close = 0;
-    for (std::size_t place = 0; place < known; ++place) {
-        place_of_[close] = static_cast<uint32_t>(place);
-        close += !(ahead(planes_[place]) > near_);
+    if (screened_) {
+        for_each_close([&](uint32_t place) { place_of_.push_back(place); });
+        return pick_screened(laid);
     }
-    place_of_.resize(close);
-    if (screened_) return pick_screened(laid);
     const uint64_t since = laid == Laid::before ? renewed_since_ : centres_;
-    const auto take = [&](std::size_t place) {
-        if (laid_[place] < since) lay(place);
-        if (ahead(planes_[place]) > near_) return false;
-        if (is_group(place) && ahead(planes_[place]) < radius && look_into(place)) return false;
-        picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
-        return true;
+    const auto take = [&](uint32_t place) {
+        if (laid_[place] < since) {
+            lay(place);
+            if (ahead(planes_[place]) > near_) return;
+        }
+        if (is_group(place) && ahead(planes_[place]) < radius && look_into(place)) return;
+        picked_.push_back(planes_[place]);
+        picked_.back().offset += radius;
+        place_of_.push_back(place);
     };
-    std::size_t picked = 0;
-    for (std::size_t i = 0; i < close; ++i)
-        if (const uint32_t place = place_of_[i]; take(place)) place_of_[picked++] = place;
-    place_of_.resize(picked);
+    for_each_close(take);
     for (std::size_t place = known; place < planes_.size(); ++place) // from behind groups
-        if (take(place)) place_of_.push_back(static_cast<uint32_t>(place));
+        if (!(ahead(planes_[place]) > near_)) take(static_cast<uint32_t>(place));
+}
+
+// Of those known by now all that are near enough by their planes. Which of them is as good as random, so all are
+// written, and those that are near are counted.
+template <class Visit>
+void NearFaces::for_each_close(Visit&& visit) noexcept
+{
+    std::array<uint32_t, 64> close;
+    const std::size_t known = planes_.size();
+    for (std::size_t first = 0; first < known; first += close.size()) {
+        std::size_t count = 0;
+        for (std::size_t place = first; place < std::min(first + close.size(), known); ++place) {
+            close[count] = static_cast<uint32_t>(place);
+            count += !(ahead(planes_[place]) > near_);
+        }
+        for (std::size_t i = 0; i < count; ++i) visit(close[i]);
+    }
 }
 
 // The nearest first: what lies behind it need not be laid.
@@ -321,9 +335,11 @@ HalfSpace NearFaces::seen(std::size_t place, Laid laid) const noexcept
 
 NearFaces::Touching NearFaces::touching(const glm::dvec3& centre, double within) noexcept
 {
-    const auto above = [&](const HalfSpace& plane) { return glm::dot(plane.normal, centre) - plane.offset; };
+    const auto above = [at = centre](const HalfSpace& plane) { return glm::dot(plane.normal, at) - plane.offset; };
     const auto before = [&](std::size_t i) { // of a triangle that lies ahead its own plane may be touched beside it
-        const double seen = above(picked_[i]), laid = screened_ ? above(planes_[place_of_[i]]) - radius_ : seen;
+        const double seen = above(picked_[i]);
+        if (!screened_) return seen;
+        const double laid = above(planes_[place_of_[i]]) - radius_;
         return laid > seen + rises ? laid : seen;
     };
     const auto known = [&](std::size_t i, double most) {

@@ -101,6 +101,8 @@ private:
     bool is_group(std::size_t place) const noexcept { return faces_[place] & group; }
     bool add_behind(uint32_t node) noexcept;
     bool look_into(std::size_t place) noexcept;
+    template <class Visit>
+    void for_each_close(Visit&& visit) noexcept;
     bool is_behind(std::size_t place, const HalfSpace& row) const noexcept;
     void lay(std::size_t place) noexcept;
     HalfSpace seen(std::size_t place, Laid laid) const noexcept;

@@ -77,7 +77,7 @@ void SphereContact::follow(const glm::dvec3& hand_m) noexcept
     aim(surface_->lattice.units(hand_m));
     proxy_.at = hand_;
     placed_ = true;
-    grown_ = radius_; // there is nothing
+    if (std::exchange(grown_, radius_) != radius_) close_ = {}; // there is nothing
     tell_free();
 }
 
@@ -147,6 +147,7 @@ glm::dvec3 SphereContact::further(const Held& held, const glm::dvec3& way, Strid
     const glm::dvec3& normal = held.row[0].normal;
     const glm::dvec3 along = way - glm::dot(way, normal) * normal;
     const glm::dvec3 last = std::exchange(stride.along, along);
+    if (last == glm::dvec3(0)) return way;
     const double length = glm::length(along), before = glm::length(last);
     if (!(length < (rubs() ? follows_rubbing : follows_most) * before) ||
         glm::dot(along, last) < follows * length * before)
@@ -220,18 +221,23 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
             cut = on_the_way = true;
             break;
         }
-        if (!look_as_far_as(want, is_point_ && !in_air_ ? std::min(want, slides) : want)) {
+        const double room =
+            look_as_far_as(want, is_point_ && !in_air_ ? std::min(want, slides) : want, is_point_ && until_it_touches);
+        if (room < 0) {
             blind = true;
             return done;
         }
         if (round == 0) seen = counters_.triangles_tested; // or one that needs a long look would never land
         const bool in_air = in_air_;
-        const double open = std::min(want, around_.room(proxy_.at));
+        const double open = std::min(want, room);
         stride = std::max(stride, is_point_ ? std::max(stride_first, least_reach * want) : least_reach * radius_);
-        if (round == 0 || in_air || is_point_ || close_.room(proxy_.at) < std::min(open, stride) ||
-            close_.margin > stride_most * stride)
-            pick(in_air ? open : std::min(open, stride), lays(in_air, round == 0));
-        const double step_max = std::min(open, close_.room(proxy_.at));
+        const double reach = in_air ? open : std::min(open, stride);
+        double close = round == 0 || in_air || is_point_ ? -1 : close_.room(proxy_.at);
+        if (close < reach || close_.margin > stride_most * stride) {
+            pick(reach, lays(in_air, round == 0));
+            close = reach;
+        }
+        const double step_max = std::min(open, close);
         const glm::dvec3 before = proxy_.at;
         if (in_air)
             fly(step_max);
@@ -274,8 +280,8 @@ bool SphereContact::move(const Friction& friction) noexcept
         return false;
     }
     const bool in_air = !proxy_.touches();
-    if (in_air && grown_ == radius_ && faces_.count() == 0 &&
-        around_.room(proxy_.at) >= glm::distance(hand_, proxy_.at)) { // nothing is near
+    if (in_air && grown_ == radius_ && faces_.rows().empty() &&
+        close_.room(proxy_.at) >= glm::distance(hand_, proxy_.at)) { // nothing is near
         proxy_.at = hand_;
         lag_ = 0;
         tell_free();
@@ -299,7 +305,10 @@ bool SphereContact::move(const Friction& friction) noexcept
     if (in_air && held.count == 0 && glm::distance(proxy_.at, hand_) <= distance_rounding) proxy_.at = hand_;
     counters_.walk_steps += round;
     counters_.walks_cut += cut;
-    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_) - distance_rounding);
+    if (grown_ < radius_) {
+        grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_) - distance_rounding);
+        close_ = {}; // that was of a smaller one
+    }
     if (cut && (on_the_way || in_air_)) {
         keep_told();
         return false;

@@ -82,6 +82,8 @@ public:
 private:
     // Lattice units: a point that can fly no farther has landed.
     static constexpr double touching_gap = 64;
+    // A point looks farther around than 1/16 of its radius only for so many.
+    static constexpr std::size_t far_faces = 256;
     static constexpr double centre_settled = 1e-8; // of the radius: what is left of a way counts as none
     // In a tick; of the planes that it comes to touch in a round against friction.
     static constexpr uint32_t rounds_max = 48, turns_max = 4;
@@ -129,8 +131,8 @@ private:
 
     void aim(const glm::dvec3& hand) noexcept;
     void place(const glm::dvec3& at) noexcept;
-    bool find_around(double margin) noexcept;
-    bool look_as_far_as(double way, double goes) noexcept;
+    bool find_around(double margin, std::size_t far_most = far_faces) noexcept;
+    double look_as_far_as(double way, double goes, bool flies = false) noexcept;
     void fly(double step_max) noexcept;
     Held slide(double step_max, Stride& last, bool is_last) noexcept;
     glm::dvec3 further(const Held& held, const glm::dvec3& way, Stride& last) noexcept;
@@ -146,8 +148,8 @@ private:
     void take_off_radius(Held& held) const noexcept;
     void pass() noexcept { path_[path_length_++] = proxy_.at; }
     void keep_told() noexcept;
-    bool stands(const Held& held) const noexcept;
-    NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
+    bool stands(const Held& held) noexcept;
+    const NearestPoint& nearest_on(uint32_t face, const glm::dvec3& centre) noexcept;
     std::pair<uint32_t, NearestPoint> touching_face(uint32_t face, const glm::dvec3& normal,
                                                     const glm::dvec3& centre) noexcept;
     uint32_t side_of(uint32_t face, const glm::dvec3& normal) const noexcept;
@@ -171,6 +173,11 @@ private:
     bool rests_ = false;           // friction holds it where it is
     bool solid_ = false;           // held by a group that there was no room to look into
     double lag_ = 0;               // by which friction held the ball back
+    struct {                       // found last: a tick asks whether it stands there, and tells it
+        uint32_t face = ~0u;
+        glm::dvec3 centre{0};
+        NearestPoint at{};
+    } nearest_;
     static constinit thread_local std::array<glm::dvec3, turns_max*(rounds_max + 1)> path_;
     static constinit thread_local uint32_t path_length_;
     Contact contacts_[3];

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace haptel::runtime {
 
@@ -32,11 +31,14 @@ void SphereContact::keep_told() noexcept
     }
 }
 
-NearestPoint SphereContact::nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept
+const NearestPoint& SphereContact::nearest_on(uint32_t face, const glm::dvec3& centre) noexcept
 {
+    if (face == nearest_.face && centre == nearest_.centre) return nearest_.at;
     const auto& vertex = surface_->faces[face].vertex;
-    return nearest_point(surface_->vertices[vertex[0]], surface_->vertices[vertex[1]], surface_->vertices[vertex[2]],
-                         centre);
+    nearest_ = {face, centre,
+                nearest_point(surface_->vertices[vertex[0]], surface_->vertices[vertex[1]],
+                              surface_->vertices[vertex[2]], centre)};
+    return nearest_.at;
 }
 
 // The face that a ball touches which `normal` pushes there, and where. Friction may hold it off the place where `face`
@@ -103,8 +105,11 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
     contact_count_ = 0;
     const double sum = held.pushes();
     glm::dvec3 way(0);
-    for (std::size_t i = 0; i < held.count; ++i) way += held.row[i].push * held.row[i].normal;
-    const double kept = sum > 0 ? std::min(1.0, opposed_most * glm::length(way) / sum) : 1.0;
+    double kept = 1;
+    if (held.count > 1 && sum > 0) {
+        for (std::size_t i = 0; i < held.count; ++i) way += held.row[i].push * held.row[i].normal;
+        kept = std::min(1.0, opposed_most * glm::length(way) / sum);
+    }
     const glm::dvec3 lag_m = (proxy_.at - nearest) * surface_->lattice.unit_m;
     for (std::size_t i = 0; i < held.count; ++i) {
         const auto& [face, normal, push] = held.row[i];
@@ -115,8 +120,8 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
         contact.sliding = proxy_.sliding;
         contact.hand_clamped = clamped_;
         contact.normal = normal;
-        NearestPoint point;
-        std::tie(contact.face, point) = touching_face(face, normal, proxy_.at);
+        const auto [touched, point] = touching_face(face, normal, proxy_.at);
+        contact.face = touched;
         contact.side = side_of(contact.face, contact.normal);
         contact.facet_normal = surface_->facet_normal(contact.face, contact.side);
         contact.barycentric = point.barycentric;
@@ -124,7 +129,7 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
         contact.hand_m = surface_->lattice.metres(hand_);
         contact.radius_m = is_point_ ? 0.0 : grown_ * surface_->lattice.unit_m;
         contact.depth_m = contact.pressed_m = push * surface_->lattice.unit_m;
-        contact.lag_m = sum > 0 ? push / sum * lag_m : glm::dvec3(0);
+        contact.lag_m = sum > 0 ? (push == sum ? 1 : push / sum) * lag_m : glm::dvec3(0);
         if (kept < 1) { // walls that push against each other: the sum stays
             const glm::dvec3 shared = kept * contact.normal + (1 - kept) / sum * way;
             const double length = glm::length(shared);

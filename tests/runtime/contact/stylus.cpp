@@ -388,3 +388,20 @@ TEST_CASE("a shaft lies on a plate of fine cells, and is not let go of")
         CHECK(pushes_m == Approx(2e-3).epsilon(1e-6));
     }
 }
+
+TEST_CASE("the tail of a stylus in the air over a fine mesh asks the tree now and then, not in each tick")
+{
+    // The tip slides on the ball, the tail is a quarter of a diameter above it, where the next face is farther than it
+    // goes in many ticks.
+    const auto surface = surface_of(make_icosphere(5));
+    StylusContact contact(surface);
+    const auto pose = [](int i) {
+        const dvec3 d(std::cos(2e-3 * i), std::sin(2e-3 * i), 0);
+        return std::pair(0.49 * d, 0.75 * d + dvec3(0, 0, 0.1));
+    };
+    contact.update(1.1 * pose(0).first, 1.1 * pose(0).second);
+    for (int i = 0; i < 100; ++i) contact.update(pose(i).first, pose(i).second);
+    const ContactCounters before = contact.counters();
+    for (int i = 100; i < 1100; ++i) CHECK(contact.update(pose(i).first, pose(i).second).touching);
+    CHECK(contact.counters().sweeps - before.sweeps < 1300); // the shaft looks for itself once a tick
+}
