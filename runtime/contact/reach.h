@@ -3,7 +3,7 @@
 
 namespace haptel::runtime {
 
-// In the first round: of the hand's way, with what friction holds it back by.
+// In the first round: of the hand's way. Where friction lets go of more it takes more rounds.
 inline constexpr double first_reach = 1.5;
 // At least, of the way that is left, or of the radius of a ball.
 inline constexpr double least_reach = 1e-3;

@@ -47,7 +47,6 @@ void SphereContact::reset() noexcept
     forget();
     hand_ = hand_before_ = glm::dvec3(0);
     grown_ = radius_;
-    lag_ = 0;
     contact_count_ = 0;
     contacts_[0] = {};
     (void)faces_.boxes();
@@ -97,7 +96,6 @@ void SphereContact::slide_on(const glm::dvec3& way_m, const Friction& friction) 
 void SphereContact::restart(const glm::dvec3& at) noexcept
 {
     hand_ = hand_before_ = at;
-    lag_ = 0;
     proxy_ = {};
     place(at);
     placed_ = true;
@@ -207,7 +205,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
     auto& [held, round, cut, on_the_way, blind] = done;
     Stride last;
     uint32_t raised = 0;                                             // by rounding
-    const double slides = glm::distance(hand_, hand_before_) + lag_; // about so far, where it touches
+    const double slides = glm::distance(hand_, hand_before_); // about so far, where it touches
     double stride = first_reach * slides;
     // A point meets few faces: what it slides by is looked at once.
     const double stride_first = stride;
@@ -283,7 +281,6 @@ bool SphereContact::move(const Friction& friction) noexcept
     if (in_air && grown_ == radius_ && faces_.rows().empty() &&
         close_.room(proxy_.at) >= glm::distance(hand_, proxy_.at)) { // nothing is near
         proxy_.at = hand_;
-        lag_ = 0;
         tell_free();
         return true;
     }
@@ -314,7 +311,6 @@ bool SphereContact::move(const Friction& friction) noexcept
         return false;
     }
     if (!rubs()) held.at = proxy_.at;
-    lag_ = held.count > 0 ? glm::distance(proxy_.at, held.at) : 0;
     if (held.count == 0)
         tell_free();
     else

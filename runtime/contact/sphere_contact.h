@@ -172,7 +172,6 @@ private:
     bool in_air_ = true;           // by now
     bool rests_ = false;           // friction holds it where it is
     bool solid_ = false;           // held by a group that there was no room to look into
-    double lag_ = 0;               // by which friction held the ball back
     struct {                       // found last: a tick asks whether it stands there, and tells it
         uint32_t face = ~0u;
         glm::dvec3 centre{0};
