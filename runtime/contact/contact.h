@@ -100,6 +100,13 @@ inline ContactCounters operator+(const ContactCounters& a, const ContactCounters
             a.walks_cut + b.walks_cut};
 }
 
+inline ContactCounters operator-(const ContactCounters& a, const ContactCounters& b) noexcept
+{
+    return {{a.sweeps - b.sweeps, a.triangles_tested - b.triangles_tested},
+            a.walk_steps - b.walk_steps,
+            a.walks_cut - b.walks_cut};
+}
+
 // Torque (N m) about the grip of a force (N) that acts at a point.
 inline glm::dvec3 torque_about(const glm::dvec3& grip_m, const glm::dvec3& point_m, const glm::dvec3& force_n)
 {

@@ -46,17 +46,20 @@ ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<con
 
 std::span<const Contact> ProbeContact::update(const ProbePose& pose, const EndsFriction& friction) noexcept
 {
-    if (settled_ && pose == pose_ && friction == friction_) return contacts();
-    const uint64_t cut = counters().walks_cut;
+    spent_ = {};
+    const bool same = friction == friction_;
+    if (settled_ && pose == pose_ && same) return contacts();
+    const ContactCounters before = counters();
     pose_ = pose;
-    friction_ = friction;
+    if (!same) friction_ = friction;
     if (auto* end = std::get_if<End>(&contact_))
         (*end)->tick(pose.tip_m, friction.tip);
     else if (auto* gripper = std::get_if<GripperContact>(&contact_))
         gripper->update(pose.tip_m, pose.tail_m, friction);
     else
         std::get_if<StylusContact>(&contact_)->update(pose.tip_m, pose.tail_m, friction);
-    settled_ = counters().walks_cut == cut;
+    spent_ = counters() - before;
+    settled_ = spent_.walks_cut == 0;
     return contacts();
 }
 

@@ -46,6 +46,7 @@ public:
     bool settled() const noexcept { return settled_; }
     bool touches() const noexcept { return !contacts().empty(); }
     ContactCounters counters() const noexcept;
+    const ContactCounters& spent() const noexcept { return spent_; } // on the last update alone
 
 private:
     using End = std::unique_ptr<EndContact>; // of a point, or a ball
@@ -57,6 +58,7 @@ private:
     std::variant<End, StylusContact, GripperContact> contact_;
     ProbePose pose_; // of the last tick
     EndsFriction friction_;
+    ContactCounters spent_;
     bool settled_ = false;
 };
 

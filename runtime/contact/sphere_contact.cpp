@@ -204,7 +204,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
     Way done;
     auto& [held, round, cut, on_the_way, blind] = done;
     Stride last;
-    uint32_t raised = 0;                                             // by rounding
+    uint32_t raised = 0;                                      // by rounding
     const double slides = glm::distance(hand_, hand_before_); // about so far, where it touches
     double stride = first_reach * slides;
     // A point meets few faces: what it slides by is looked at once.

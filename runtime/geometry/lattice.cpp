@@ -22,17 +22,6 @@ glm::dvec3 Lattice::snap(const glm::dvec3& point_m) const noexcept
     return snap_units((point_m - centre_m) / unit_m);
 }
 
-glm::dvec3 Lattice::snap_units(const glm::dvec3& units) noexcept
-{
-    constexpr double round = 0x1.8p52; // adding it leaves no digit after the point; ties go to even
-    return (glm::clamp(units, -workspace, workspace) + round) - round;
-}
-
-glm::dvec3 Lattice::units(const glm::dvec3& point_m) const noexcept
-{
-    return (point_m - centre_m) / unit_m;
-}
-
 bool Lattice::clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept
 {
     from = glm::clamp(from, -0x1p100, 0x1p100); // of places farther away the way would not be finite

@@ -29,8 +29,13 @@ struct Lattice {
 
     glm::dvec3 snap(const glm::dvec3& point_m) const noexcept;        // nearest point, clamped to the workspace
     glm::dvec3 snap_vertex(const glm::dvec3& point_m) const noexcept; // nearest point of the coarse lattice
-    static glm::dvec3 snap_units(const glm::dvec3& units) noexcept;   // the same of a place in lattice units
-    glm::dvec3 units(const glm::dvec3& point_m) const noexcept;       // neither rounded nor clamped
+    // The same of a place in lattice units. Asked for in every tick, as the next one is.
+    static glm::dvec3 snap_units(const glm::dvec3& units) noexcept
+    {
+        constexpr double round = 0x1.8p52; // adding it leaves no digit after the point; ties go to even
+        return (glm::clamp(units, -workspace, workspace) + round) - round;
+    }
+    glm::dvec3 units(const glm::dvec3& point_m) const noexcept { return (point_m - centre_m) / unit_m; } // not rounded
     static bool beyond_workspace(const glm::dvec3& units) noexcept { return beyond(units, workspace); }
     // Whether a coordinate is larger, of either sign: what rounding leaves has any sign, and is asked for every tick.
     static bool beyond(const glm::dvec3& v, double bound) noexcept

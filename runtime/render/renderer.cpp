@@ -185,12 +185,11 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
 std::span<const Contact> Renderer::update_contact(Body& body, const ProbePose& pose,
                                                   const EndsFriction& friction) noexcept
 {
-    const ContactCounters before = body.contact.counters();
     const std::span<const Contact> contacts = body.contact.update(pose, friction);
-    const ContactCounters now = body.contact.counters();
-    work_.queries += now.sweeps - before.sweeps;
-    work_.triangles += now.triangles_tested - before.triangles_tested;
-    work_.steps += now.walk_steps - before.walk_steps;
+    const ContactCounters& spent = body.contact.spent();
+    work_.queries += spent.sweeps;
+    work_.triangles += spent.triangles_tested;
+    work_.steps += spent.walk_steps;
     return contacts;
 }
 
