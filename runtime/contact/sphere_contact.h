@@ -18,7 +18,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
 
 namespace haptel::runtime {
 
@@ -150,8 +149,7 @@ private:
     void keep_told() noexcept;
     bool stands(const Held& held) noexcept;
     const NearestPoint& nearest_on(uint32_t face, const glm::dvec3& centre) noexcept;
-    std::pair<uint32_t, NearestPoint> touching_face(uint32_t face, const glm::dvec3& normal,
-                                                    const glm::dvec3& centre) noexcept;
+    uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept;
     uint32_t side_of(uint32_t face, const glm::dvec3& normal) const noexcept;
     void tell(const Held& held, const glm::dvec3& nearest) noexcept;
     void tell_free() noexcept;

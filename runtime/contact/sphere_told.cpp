@@ -41,39 +41,35 @@ const NearestPoint& SphereContact::nearest_on(uint32_t face, const glm::dvec3& c
     return nearest_.at;
 }
 
-// The face that a ball touches which `normal` pushes there, and where. Friction may hold it off the place where `face`
-// does.
-std::pair<uint32_t, NearestPoint> SphereContact::touching_face(uint32_t face, const glm::dvec3& normal,
-                                                               const glm::dvec3& centre) noexcept
+// The face that a ball touches which `normal` pushes there. Friction may hold it off the place where `face` does.
+uint32_t SphereContact::touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept
 {
-    // Lattice units: as near as the nearest, and at the same place by that: where a point touches, an angle of 3e-4.
-    constexpr double as_near = 64;
-    const double same_place = std::sqrt(as_near * grown_);
-    NearestPoint at = nearest_on(face, centre);
-    double distance = glm::distance(at.at, centre);
+    constexpr double as_near = 64; // as the nearest, lattice units
+    glm::dvec3 at = nearest_on(face, centre).at;
+    double distance = glm::distance(at, centre);
     if (distance > grown_ + as_near)
         faces_.for_each_near(centre, distance, [&](uint32_t other) {
-            const NearestPoint there = nearest_on(other, centre);
-            const double away = glm::distance(there.at, centre);
-            if (away >= distance || glm::dot(centre - there.at, normal) < same_piece * away) return;
+            const glm::dvec3& there = nearest_on(other, centre).at;
+            const double away = glm::distance(there, centre);
+            if (away >= distance || glm::dot(centre - there, normal) < same_piece * away) return;
             distance = away;
             at = there;
             face = other;
         });
-    if (surface_->is_clean()) return {face, at};
+    if (surface_->is_clean()) return face;
     // Of the faces that meet there the one that turns to it most: another may be the bottom of an object that lies on
     // the other's top, and ends in the same edge where nobody can come to it. Of those in one plane the first.
     const auto turned = [&](uint32_t number) { return std::fabs(glm::dot(surface_->faces[number].normal, normal)); };
-    if (surface_->origins.empty() && turned(face) > 1 - same_plane) return {face, at};
-    NearestPoint told = at;
+    if (surface_->origins.empty() && turned(face) > 1 - same_plane) return face;
+    const double same_place = std::sqrt(as_near * grown_); // by that: where a point touches, an angle of 3e-4
     faces_.for_each_near(centre, distance + as_near, [&](uint32_t other) {
         const double more = turned(other) - turned(face);
         if (more < -same_plane || (more <= same_plane && other > face)) return;
-        const NearestPoint there = nearest_on(other, centre);
-        if (more <= same_plane && glm::distance(there.at, centre) > distance + distance_rounding) return;
-        if (glm::distance(there.at, at.at) < same_place) face = other, told = there;
+        const glm::dvec3& there = nearest_on(other, centre).at;
+        if (more <= same_plane && glm::distance(there, centre) > distance + distance_rounding) return;
+        if (glm::distance(there, at) < same_place) face = other;
     });
-    return {face, told};
+    return face;
 }
 
 // Of a face that the normal lies in the plane of, as at the rim of a lid, the front: rounding does not choose.
@@ -120,8 +116,8 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
         contact.sliding = proxy_.sliding;
         contact.hand_clamped = clamped_;
         contact.normal = normal;
-        const auto [touched, point] = touching_face(face, normal, proxy_.at);
-        contact.face = touched;
+        contact.face = touching_face(face, normal, proxy_.at);
+        const NearestPoint& point = nearest_on(contact.face, proxy_.at);
         contact.side = side_of(contact.face, contact.normal);
         contact.facet_normal = surface_->facet_normal(contact.face, contact.side);
         contact.barycentric = point.barycentric;
