@@ -45,7 +45,7 @@ public:
     // False: update() reached a limit, and the next one goes on.
     bool settled() const noexcept { return settled_; }
     bool touches() const noexcept { return !contacts().empty(); }
-    ContactCounters counters() const noexcept;
+    ContactCounters counters() const noexcept;                       // of all
     const ContactCounters& spent() const noexcept { return spent_; } // on the last update alone
 
 private:

@@ -76,7 +76,8 @@ void SphereContact::follow(const glm::dvec3& hand_m) noexcept
     aim(surface_->lattice.units(hand_m));
     proxy_.at = hand_;
     placed_ = true;
-    if (std::exchange(grown_, radius_) != radius_) close_ = {}; // there is nothing
+    if (grown_ < radius_) close_ = {}; // that was of a smaller one
+    grown_ = radius_;                  // there is nothing
     tell_free();
 }
 

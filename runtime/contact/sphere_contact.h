@@ -81,7 +81,7 @@ public:
 private:
     // Lattice units: a point that can fly no farther has landed.
     static constexpr double touching_gap = 64;
-    // A point looks farther around than 1/16 of its radius only for so many.
+    // A point looks farther around than margin_of_point only for so many, and where it flies for fewer.
     static constexpr std::size_t far_faces = 256;
     static constexpr double centre_settled = 1e-8; // of the radius: what is left of a way counts as none
     // In a tick; of the planes that it comes to touch in a round against friction.

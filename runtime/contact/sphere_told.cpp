@@ -125,7 +125,7 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
         contact.hand_m = surface_->lattice.metres(hand_);
         contact.radius_m = is_point_ ? 0.0 : grown_ * surface_->lattice.unit_m;
         contact.depth_m = contact.pressed_m = push * surface_->lattice.unit_m;
-        contact.lag_m = sum > 0 ? (push == sum ? 1 : push / sum) * lag_m : glm::dvec3(0);
+        contact.lag_m = sum > 0 ? push / sum * lag_m : glm::dvec3(0);
         if (kept < 1) { // walls that push against each other: the sum stays
             const glm::dvec3 shared = kept * contact.normal + (1 - kept) / sum * way;
             const double length = glm::length(shared);
