@@ -9,6 +9,13 @@
 
 namespace haptel::emit {
 
+// What the languages call differently in one operation.
+struct OperationWords {
+    const char *abs, *round, *suffix;   // of functions that are exact; what stands behind the name of each
+    const char *both, *either, *one_of; // of truths
+    bool has_fma;                       // and arithmetic of numbers that are not finite
+};
+
 class Dialect {
 public:
     virtual ~Dialect() = default;
@@ -23,7 +30,10 @@ public:
     virtual std::string real(double value) const = 0;
     virtual std::string truth(bool value) const = 0;
     // One operation; operands are names or literals. Integers of both kinds are unsigned words in two's complement.
-    virtual std::string expression(ir::Op op, std::span<const std::string> operands) const = 0;
+    std::string expression(ir::Op op, std::span<const std::string> operands) const; // operation.cpp
+    virtual OperationWords operation_words() const = 0;
+    // A value as of that type; i32 is signed here.
+    virtual std::string cast(ir::Type to, const std::string& value) const = 0;
     // What an entry reads, as a value of a variable.
     virtual std::string read(ir::Input input) const = 0;
     virtual std::string read(const ir::Texture& texture, const ir::Parameter& parameter) const = 0;

@@ -23,7 +23,14 @@ public:
 
     std::string real(double value) const override;
     std::string truth(bool value) const override { return value ? "true" : "false"; }
-    std::string expression(ir::Op op, std::span<const std::string> operands) const override;
+    emit::OperationWords operation_words() const override
+    {
+        return {"abs", "roundEven", "", " && ", " || ", " ^^ ", false};
+    }
+    std::string cast(ir::Type to, const std::string& value) const override
+    {
+        return (to == ir::Type::i32 ? "int" : type(to)) + "(" + value + ")";
+    }
     std::string read(ir::Input input) const override;
     std::string read(const ir::Texture& texture, const ir::Parameter& parameter) const override;
 
