@@ -136,8 +136,7 @@ AheadResult build_code(std::span<const emit_c::LibraryTexture> textures, const A
 {
     Build build(textures, options);
     if (!build.error.empty()) return {{}, std::move(build.error)};
-    CompileTimes unused;
-    Object object = make_object(*build.code, *build.machine, Effort::full, unused, type);
+    Object object = make_object(*build.code, *build.machine, Effort::full, type);
     return {std::move(object.bytes), std::move(object.error)};
 }
 
@@ -157,8 +156,7 @@ AheadResult build_llvm_text(std::span<const emit_c::LibraryTexture> textures, co
 {
     Build build(textures, options);
     if (!build.error.empty()) return {{}, std::move(build.error)};
-    CompileTimes unused;
-    if (Object object = make_object(*build.code, *build.machine, Effort::full, unused); !object.error.empty())
+    if (Object object = make_object(*build.code, *build.machine, Effort::full); !object.error.empty())
         return {{}, std::move(object.error)};
     AheadResult result;
     llvm::raw_string_ostream(result.bytes) << *build.code;

@@ -9,6 +9,7 @@
 #include "jit/engine/shared_code.h"
 
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 
 namespace haptel::jit {
@@ -20,7 +21,7 @@ namespace {
 
 // A program that is made in less time than that is not worth a file, unless it is of full effort: that is what the next
 // process begins with. Kernels always are: textures share them.
-constexpr double worth_keeping_s = 10e-3;
+constexpr std::chrono::milliseconds worth_keeping{10};
 // More makes no kernel faster that was measured, and takes twice as long.
 constexpr Effort kernel_effort_max = Effort::quick;
 
@@ -29,7 +30,7 @@ struct Engine {
     Engine() : fault(start()) {}
     std::string start();
     CodeResult compile(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options);
-    CodeResult link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees, CompileTimes& times);
+    CodeResult link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees);
     std::string identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const;
 
     EngineInfo info;
@@ -125,12 +126,10 @@ std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryP
 }
 
 // With what the object calls.
-CodeResult Engine::link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees, CompileTimes& times)
+CodeResult Engine::link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees)
 {
-    Stopwatch stopwatch;
     Addresses callee_addresses, entry_addresses;
     if (std::string error = callees.finish(callee_addresses); !error.empty()) return {nullptr, error};
-    times.kernels_s = stopwatch.lap_s();
 
     const bool is_replaceable = object.effort != Effort::full;
     for (const EntryPoint& entry : entries) {
@@ -149,15 +148,12 @@ CodeResult Engine::link(const Object& object, std::span<const EntryPoint> entrie
         linked_entries[entry.name] = {entry_addresses[symbol_of(entry)].toPtr<void*>(),
                                       is_replaceable ? entry_addresses[slot_of(entry)].toPtr<void**>() : nullptr,
                                       entry.lanes == LaneForm::points};
-    times.link_s = stopwatch.lap_s();
-    return {std::make_shared<Code>(std::move(linked_entries), memory, times, !is_replaceable), {}};
+    return {std::make_shared<Code>(std::move(linked_entries), memory, !is_replaceable), {}};
 }
 
 CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options)
 {
     if (!fault.empty()) return {nullptr, fault};
-    CompileTimes times;
-    Stopwatch stopwatch;
     KernelCalls calls(module, processor, info.identity);
     const std::string identity = identity_of(calls, entries);
     const auto generate_for = [&](Effort effort, llvm::LLVMContext& context) {
@@ -177,20 +173,19 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
             llvm::LLVMContext context;
             generate_for(object.effort, context);
         }
-        times.generate_s = stopwatch.lap_s();
         Fetch callees = callees_for(object.effort);
-        CodeResult linked = link(object, entries, callees, times);
+        CodeResult linked = link(object, entries, callees);
         if (linked.code) return linked; // else what is on disk is no good
     }
     llvm::LLVMContext context;
     const std::unique_ptr<llvm::Module> generated = generate_for(options.effort, context);
-    times.generate_s = stopwatch.lap_s();
+    const auto start = std::chrono::steady_clock::now();
     Fetch callees = callees_for(options.effort);
-    object = compilers.make(*generated, options.effort, times);
+    object = compilers.make(*generated, options.effort);
     if (!object.error.empty()) return {nullptr, object.error};
-    if (options.kernels && (stopwatch.lap_s() > worth_keeping_s || options.effort == Effort::full))
-        keep(object, identity);
-    return link(object, entries, callees, times);
+    const bool took_long = std::chrono::steady_clock::now() - start > worth_keeping;
+    if (options.kernels && (took_long || options.effort == Effort::full)) keep(object, identity);
+    return link(object, entries, callees);
 }
 
 } // namespace

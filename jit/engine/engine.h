@@ -26,11 +26,6 @@ enum class Effort : uint8_t {
     full   // all of LLVM's -O2 over the program with all that it calls: what a long exploration deserves
 };
 
-// Time from IR to callable, by stage, seconds; of kernels, that for which the program waited.
-struct CompileTimes {
-    double generate_s = 0, optimise_s = 0, select_s = 0, kernels_s = 0, link_s = 0;
-};
-
 // Owns the machine code of one program.
 class Code {
 public:
@@ -40,14 +35,13 @@ public:
         void** slot = nullptr; // holds where the entry jumps to; none in code of full effort
         bool is_batch = false;
     };
-    Code(std::map<std::string, Entry> linked, std::shared_ptr<void> owned, const CompileTimes& took, bool is_full)
-        : times(took), entries(std::move(linked)), memory(std::move(owned)), is_final(is_full)
+    Code(std::map<std::string, Entry> linked, std::shared_ptr<void> owned, bool is_full)
+        : entries(std::move(linked)), memory(std::move(owned)), is_final(is_full)
     {
     }
     // Of an entry point by its name; null if there is none.
     haptel_entry* entry(const std::string& name) const;
     haptel_batch_entry* batch_entry(const std::string& name) const;
-    const CompileTimes times;
 
     // True where the code is of full effort, made so or replaced.
     bool is_full() const { return is_final; }

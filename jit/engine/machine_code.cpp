@@ -70,27 +70,20 @@ void optimise(llvm::Module& module, llvm::TargetMachine& machine, Effort effort)
 
 } // namespace
 
-Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort, CompileTimes& times,
-                   llvm::CodeGenFileType type)
+Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort, llvm::CodeGenFileType type)
 {
-    Stopwatch stopwatch;
     module.setDataLayout(machine.createDataLayout());
     module.setTargetTriple(machine.getTargetTriple().str());
     std::string problem;
     llvm::raw_string_ostream problems(problem);
     if (llvm::verifyModule(module, &problems)) return {{}, "generated code is malformed: " + problem};
-    times.generate_s += stopwatch.lap_s();
-
     optimise(module, machine, effort);
-    times.optimise_s += stopwatch.lap_s();
-
     llvm::SmallVector<char, 0> object;
     llvm::raw_svector_ostream stream(object);
     llvm::legacy::PassManager passes;
     if (machine.addPassesToEmitFile(passes, stream, nullptr, type))
         return {{}, "the code generator cannot write code for " + machine.getTargetTriple().str()};
     passes.run(module);
-    times.select_s += stopwatch.lap_s();
     return {{object.begin(), object.end()}, {}, effort};
 }
 
@@ -107,10 +100,10 @@ std::string Compilers::start(const llvm::orc::JITTargetMachineBuilder& host,
     return {};
 }
 
-Object Compilers::make(llvm::Module& module, Effort effort, CompileTimes& times)
+Object Compilers::make(llvm::Module& module, Effort effort)
 {
     Machine machine = take(effort);
-    Object object = make_object(module, *machine, effort, times);
+    Object object = make_object(module, *machine, effort);
     give_back(effort, std::move(machine));
     return object;
 }

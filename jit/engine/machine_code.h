@@ -6,29 +6,13 @@
 #include "jit/engine/engine.h"
 
 #include <array>
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace haptel::jit {
-
-// Seconds from one lap to the next.
-class Stopwatch {
-public:
-    double lap_s()
-    {
-        const Clock::time_point now = Clock::now();
-        return std::chrono::duration<double>(now - std::exchange(start, now)).count();
-    }
-
-private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point start = Clock::now();
-};
 
 // An object file and how it came about.
 struct Object {
@@ -36,8 +20,8 @@ struct Object {
     Effort effort = Effort::quick; // what went into it, at least what was asked for
 };
 
-// Verifies, optimises and selects; adds what that took to `times`. `type`: assembler's text instead.
-Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort, CompileTimes& times,
+// Verifies, optimises and selects. `type`: assembler's text instead.
+Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort,
                    llvm::CodeGenFileType type = llvm::CodeGenFileType::ObjectFile);
 
 // The code generators of this processor. One serves one thread at a time; it is made when all there are serve another.
@@ -47,7 +31,7 @@ public:
     std::string start(const llvm::orc::JITTargetMachineBuilder& host,
                       llvm::function_ref<void(llvm::TargetMachine&)> look);
 
-    Object make(llvm::Module& module, Effort effort, CompileTimes& times);
+    Object make(llvm::Module& module, Effort effort);
 
 private:
     using Machine = std::unique_ptr<llvm::TargetMachine>;

@@ -50,11 +50,10 @@ std::string SharedCode::link(const Function& function, Effort effort)
     Addresses wanted{{name, {}}};
     Object object = found_object(identity, effort);
     if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
-        CompileTimes unused;
         llvm::LLVMContext context;
         llvm::Module alone(name, context);
         write(alone, effort == Effort::draft);
-        object = compilers.make(alone, effort, unused);
+        object = compilers.make(alone, effort);
         if (!object.error.empty()) return object.error;
         if (effort != Effort::draft) keep(object, identity);
         if (Linker::Linked made = linker.link(object.bytes, {}, wanted); !made.place) return made.error;

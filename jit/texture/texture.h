@@ -40,8 +40,6 @@ public:
     const lang::SourceSet& sources() const { return program->sources; }
     const ir::Texture& source_of(const haptel_texture& texture) const;
 
-    const CompileTimes& times() const { return code->times; }
-
     // Puts code of full effort in the place of a draft or of quick code, in seconds rather than milliseconds; the same
     // bits. Any thread, whoever calls the entries meanwhile. Nothing happens where that is done, or cannot be.
     void optimise() const;
