@@ -15,7 +15,7 @@ constexpr HidUsage pid(uint16_t number)
 constexpr std::array<HidUsage, axes_max> axis_usages = {0x00010030, 0x00010031}; // Generic Desktop: X, Y
 constexpr HidUsage first_ordinal = 0x000a0001;                                   // Ordinals: Instance 1
 
-constexpr HidUsage set_effect = pid(0x21), block_index = pid(0x22), effect_type = pid(0x25), constant_type = pid(0x26);
+constexpr HidUsage set_effect = pid(0x21), block_index = pid(0x22), constant_type = pid(0x26);
 constexpr HidUsage duration = pid(0x50), effect_gain = pid(0x52);
 constexpr HidUsage axes_enable = pid(0x55), direction_enable = pid(0x56), direction = pid(0x57);
 constexpr HidUsage set_constant_force = pid(0x73), magnitude = pid(0x70);

@@ -40,7 +40,6 @@ public:
 
     int axes() const { return axes_; } // that are sensed and pushed
     AxisRange range(int axis) const;
-    uint8_t axis_report(int axis) const { return place_[static_cast<std::size_t>(axis)].report; }
     std::optional<int64_t> place(int axis, std::span<const uint8_t> transfer) const noexcept;
     std::size_t input_bytes() const { return input_bytes_; } // of the longest
 

@@ -37,34 +37,6 @@ double loop_integral_m(const TextureBinding& binding, const CheckPoints& points,
     return sum / steps;
 }
 
-// Central difference of the height along p_axis, f64. n and uv follow.
-double central_difference(const TextureBinding& binding, const CheckPoints& points, const haptel_point& point,
-                          size_t axis, double step_m)
-{
-    haptel_point below = point, above = point;
-    below.p[axis] -= step_m;
-    above.p[axis] += step_m;
-    const double rise_m =
-        sample_at(binding, points.at(above.p)).height_m - sample_at(binding, points.at(below.p)).height_m;
-    return rise_m / (above.p[axis] - below.p[axis]);
-}
-
-// Distance of the gradient from the nearest of differences at steps between 2^-10 and 2^-30 of the box: one of them
-// fits the texture, whatever its wavelengths.
-double difference_error(const TextureBinding& binding, const CheckPoints& points, const haptel_point& point,
-                        const haptel_sample& sample)
-{
-    double best = HUGE_VAL;
-    for (int exponent = -10; exponent >= -30; --exponent) {
-        double error[3];
-        for (size_t axis = 0; axis < 3; ++axis)
-            error[axis] = central_difference(binding, points, point, axis, std::ldexp(points.side_m(), exponent)) -
-                          sample.gradient[axis];
-        best = std::fmin(best, std::hypot(error[0], error[1], error[2]));
-    }
-    return best;
-}
-
 constexpr int paths = 400;
 
 const char* name_of(uint32_t continuity)
@@ -160,39 +132,6 @@ void check_code(GradientCheck& check, const TextureBinding& binding, const Check
         check.failures.push_back(std::string("the class is said to be ") + name_of(binding.facts.continuity) +
                                  ", measured is " + name_of(all.roughest) + "; found at --at " +
                                  listed(all.roughest_p_m));
-}
-
-GradientCheck check_gradient(const TextureBinding& binding, const CheckBox& box, uint32_t count, uint64_t seed)
-{
-    constexpr double tolerance = 1e-5;
-    const CheckPoints points(box, seed);
-    GradientCheck check;
-    check.points = count;
-    std::vector<double> errors;
-    double largest = 0, worst = -1;
-    for (uint32_t i = 0; i < count; ++i) {
-        const haptel_point point = points.random(i);
-        const haptel_sample sample = sample_at(binding, point);
-        largest = std::fmax(largest, std::hypot(sample.gradient[0], sample.gradient[1], sample.gradient[2]));
-        errors.push_back(difference_error(binding, points, point, sample));
-        if (errors.back() <= worst) continue;
-        worst = errors.back();
-        std::copy(point.p, point.p + 3, check.worst_point_m);
-    }
-    // Differences do not tell a kink from a mistake: where they never agree is taken for kinks as long as that is rare.
-    for (double& error : errors) error = relative(error, largest);
-    const auto agrees = [](double error) { return error <= tolerance; };
-    const auto disagree = count - static_cast<uint32_t>(std::count_if(errors.begin(), errors.end(), agrees));
-    const bool rare = disagree <= kinks_share_max * count;
-    check.points_at_kinks = rare ? disagree : 0;
-    check.gradient_error_difference = 0;
-    for (double error : errors)
-        if (agrees(error) || !rare)
-            check.gradient_error_difference = std::fmax(*check.gradient_error_difference, error);
-    expect_at_most(check, "gradient differs from differences of the height", *check.gradient_error_difference,
-                   tolerance);
-    check_code(check, binding, points);
-    return check;
 }
 
 } // namespace haptel::jit

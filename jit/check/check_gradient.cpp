@@ -187,9 +187,6 @@ GradientCheck check_gradient(const std::shared_ptr<const CompiledProgram>& progr
     check.points = count;
     check.points_at_kinks = static_cast<uint32_t>(
         std::count_if(figures.begin(), figures.end(), [](const PointFigures& point) { return point.at_kink; }));
-    const Largest& worst = gradient_error.size >= difference_error.size ? gradient_error : difference_error;
-    const haptel_point worst_point = points.random(worst.index);
-    std::copy(worst_point.p, worst_point.p + 3, check.worst_point_m);
     check.height_error_oracle = relative(height_error.size, height);
     check.gradient_error_oracle = relative(gradient_error.size, gradient);
     check.conditioning = relative(largest(&PointFigures::conditioning).size, gradient);

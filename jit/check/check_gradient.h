@@ -49,7 +49,6 @@ struct GradientCheck {
     uint64_t not_finite = 0; // faults or values not finite, edge and huge points included
     uint64_t bounds_exceeded = 0;     // heights, slopes and changes of the gradient outside of the binding's facts
     uint32_t continuity_measured = 0; // HAPTEL_CONTINUITY_*: roughest met along short paths; 0: not looked at
-    double worst_point_m[3] = {};     // where the gradient is farthest from the truth
     std::optional<AmplifiedRounding> amplified; // what the errors are of, where that is no fault
     std::vector<std::string> failures;          // in words, with place and values; empty: passed
 
@@ -62,10 +61,5 @@ struct GradientCheck {
 // `program`, or wraps a texture of the same name and block. Uses all processors.
 GradientCheck check_gradient(const std::shared_ptr<const CompiledProgram>& program, const TextureBinding& binding,
                              const CheckBox& box, uint32_t points = default_check_points, uint64_t seed = 1);
-
-// Of a texture that is code alone (precompiled, a lambda): there is no oracle, so the gradient is compared with f64
-// differences of the height at the step that fits best, and only an error above 1e-5 of the largest gradient is seen.
-GradientCheck check_gradient(const TextureBinding& binding, const CheckBox& box, uint32_t points = default_check_points,
-                             uint64_t seed = 1);
 
 } // namespace haptel::jit

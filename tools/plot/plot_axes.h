@@ -49,7 +49,6 @@ struct Axes {
 };
 
 struct AxesStyle {
-    bool grid = true;
     bool x_labels = true; // numbers and label; false for a panel above another one with the same axis
     int x_ticks = 6, y_ticks = 5;
 };

@@ -119,33 +119,6 @@ TEST_CASE("the class is measured, and facts that promise too much fail")
     CHECK(contains(failures_of("value 0 .. 1, slope 9, class C0", "fract(x)"), "measured is jump"));
 }
 
-TEST_CASE("a wrong gradient of a texture without source fails, a right one passes")
-{
-    haptel_texture texture{};
-    texture.name = "lambda";
-    texture.block_size = sizeof(haptel_block_head);
-    const haptel_block_head block{};
-    TextureBinding binding{nullptr, &texture, &block, {-1, 1, 1, 1, 0, 0}};
-    const auto sine = [](const haptel_point* at, const void*, haptel_sample* sample) {
-        *sample = blank_sample;
-        sample->height_m = 1e-4 * std::sin(at->p[0] / 1e-3);
-        sample->gradient[0] = 0.1 * std::cos(at->p[0] / 1e-3);
-    };
-    texture.height_gradient = sine;
-    const jit::GradientCheck right = jit::check_gradient(binding, {});
-    INFO(all(right.failures));
-    CHECK(right.passed());
-    CHECK_FALSE(right.gradient_error_oracle);
-    texture.height_gradient = [](const haptel_point* at, const void*, haptel_sample* sample) {
-        *sample = blank_sample;
-        sample->height_m = 1e-4 * std::sin(at->p[0] / 1e-3);
-        sample->gradient[0] = 0.1001 * std::cos(at->p[0] / 1e-3);
-    };
-    const jit::GradientCheck wrong = jit::check_gradient(binding, {});
-    CHECK_FALSE(wrong.passed());
-    CHECK(*wrong.gradient_error_difference > 5e-4);
-}
-
 TEST_CASE("the same seed gives the same figures, whatever the threads")
 {
     const char* text = "texture rock() { return 60um * fbm(p / 4mm, 3); }";
