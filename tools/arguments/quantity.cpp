@@ -66,6 +66,15 @@ Parsed<std::array<double, size>> parse_list(std::string_view text, Parse&& parse
     return result;
 }
 
+template <typename Vector>
+Parsed<Vector> directed(Parsed<Vector> read)
+{
+    const double length = glm::length(read.value);
+    if (read && (!(length > 0) || !std::isfinite(length))) read.error = "it has no direction";
+    if (read) read.value /= length;
+    return read;
+}
+
 } // namespace
 
 Parsed<double> parse_number(std::string_view text)
@@ -109,6 +118,16 @@ Parsed<glm::dvec2> parse_vector2(std::string_view text)
 {
     const auto list = parse_list<2>(text, parse_number, "coordinates u,v");
     return {{list.value[0], list.value[1]}, list.error};
+}
+
+Parsed<glm::dvec3> parse_direction(std::string_view text)
+{
+    return directed(parse_vector(text));
+}
+
+Parsed<glm::dvec2> parse_direction2(std::string_view text)
+{
+    return directed(parse_vector2(text));
 }
 
 CLI::Option* add_length(CLI::App& app, const std::string& names, double& metres, const std::string& description,

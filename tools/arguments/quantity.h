@@ -27,6 +27,26 @@ Parsed<double> parse_length(std::string_view text);      // metres
 Parsed<glm::dvec3> parse_point(std::string_view text);   // "x,y,z", three lengths
 Parsed<glm::dvec3> parse_vector(std::string_view text);  // "x,y,z", three plain numbers
 Parsed<glm::dvec2> parse_vector2(std::string_view text); // "u,v"
+// Such vectors of length 1, by their direction.
+Parsed<glm::dvec3> parse_direction(std::string_view text);
+Parsed<glm::dvec2> parse_direction2(std::string_view text);
+
+// An option whose text is parsed so; what cannot be is misuse. `value`: T, or what may be none.
+template <typename Value, typename T>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type, Value& value,
+                        Parsed<T> (*parse)(std::string_view), const std::string& description)
+{
+    return app
+        .add_option_function<std::string>(
+            name,
+            [parse, name, &value](const std::string& text) {
+                const Parsed<T> parsed = parse(text);
+                if (!parsed) throw CLI::ValidationError(name, parsed.error);
+                value = parsed.value;
+            },
+            description)
+        ->type_name(type);
+}
 
 enum class NumberRange : uint8_t { positive, not_negative };
 

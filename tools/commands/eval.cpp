@@ -251,23 +251,6 @@ ExitCode run(const EvalOptions& options)
     return is_sound() ? ExitCode::fine : ExitCode::findings;
 }
 
-template <typename T>
-CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type,
-                        Parsed<T> (*parse)(std::string_view), std::function<void(const T&)> set,
-                        const std::string& description)
-{
-    return app
-        .add_option_function<std::string>(
-            name,
-            [parse, set = std::move(set)](const std::string& text) {
-                const Parsed<T> parsed = parse(text);
-                if (!parsed) throw CLI::ValidationError(parsed.error);
-                set(parsed.value);
-            },
-            description)
-        ->type_name(type);
-}
-
 } // namespace
 
 Command eval_command(CLI::App& app)
@@ -276,8 +259,7 @@ Command eval_command(CLI::App& app)
     CLI::App* command = app.add_subcommand("eval", "Height and gradient of a texture at one point or many");
     add_texture(*command, options->texture);
     auto* where = command->add_option_group("Points");
-    add_parsed<glm::dvec3>(
-        *where, "--at", "X,Y,Z", parse_point, [options](const glm::dvec3& p_m) { options->at_m = p_m; }, "One point");
+    add_parsed(*where, "--at", "X,Y,Z", options->at_m, parse_point, "One point");
     where
         ->add_option(
             "--points", options->points,
@@ -286,16 +268,10 @@ Command eval_command(CLI::App& app)
         ->type_name("FILE.csv");
     where->require_option(1);
     add_parameters(*command, options->parameters);
-    add_parsed<glm::dvec3>(
-        *command, "--normal", "X,Y,Z", parse_vector, [options](const glm::dvec3& n) { options->normal = n; },
-        "The input n [0,0,1]");
-    add_parsed<glm::dvec2>(
-        *command, "--uv", "U,V", parse_vector2, [options](const glm::dvec2& uv) { options->uv = uv; },
-        "The input uv [0,0]");
-    add_parsed<glm::dvec3>(
-        *command, "--velocity", "X,Y,Z", parse_vector,
-        [options](const glm::dvec3& velocity) { options->velocity_m_per_s = velocity; },
-        "The input velocity, m/s [0,0,0]");
+    add_parsed(*command, "--normal", "X,Y,Z", options->normal, parse_vector, "The input n [0,0,1]");
+    add_parsed(*command, "--uv", "U,V", options->uv, parse_vector2, "The input uv [0,0]");
+    add_parsed(*command, "--velocity", "X,Y,Z", options->velocity_m_per_s, parse_vector,
+               "The input velocity, m/s [0,0,0]");
     command->add_option("--time", options->time_s, "The input time, seconds [0]")->type_name("S");
     command->add_option("--normal-force", options->normal_force_n, "The input normal_force, newtons [0]")
         ->type_name("N")

@@ -67,7 +67,7 @@ runtime::ServoOptions servo_options(const ExploreOptions& options)
     runtime::ServoOptions servo;
     const bool wall = options.clock == "wall";
     servo.clock = wall ? runtime::ServoClock::wall : runtime::ServoClock::virtual_time;
-    servo.seconds = options.seconds;
+    servo.seconds = options.seconds.value_or(servo.seconds);
     servo.core = options.core;
     servo.wait_for_reader = !wall;
     servo.allocation_count = runtime::allocations_of_this_thread;
@@ -89,21 +89,6 @@ ExploreKept kept_of(const ExploreOptions& options, const runtime::LoadedScene& l
     kept.origin.clock = options.clock;
     kept.origin.files = traced_files(options.recording, options.scene, loaded);
     return kept;
-}
-
-void add_seconds(CLI::App& command, double& seconds)
-{
-    command
-        .add_option_function<std::string>(
-            "--seconds",
-            [&seconds](const std::string& text) {
-                const Parsed<double> number = parse_number(text);
-                if (!number) throw CLI::ValidationError(number.error);
-                if (!(number.value > 0)) throw CLI::ValidationError(fmt::format("'{}' seconds is no time", text));
-                seconds = number.value;
-            },
-            "Ends after this time; without it, Ctrl-C does")
-        ->type_name("N");
 }
 
 } // namespace
@@ -177,7 +162,9 @@ ExitCode explore(const ExploreOptions& options)
 void add_exploring(CLI::App& command, ExploreOptions& options)
 {
     command.add_option("scene", options.scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
-    add_seconds(command, options.seconds);
+    add_number(command, "--seconds", options.seconds, "Ends after this time; without it, Ctrl-C does",
+               NumberRange::positive)
+        ->type_name("N");
     command
         .add_option("--device", options.devices,
                     fmt::format("Device in place of the scene's; repeat for several: {}",

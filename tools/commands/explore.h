@@ -4,7 +4,6 @@
 #include "tools/commands/command.h"
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,7 +18,7 @@ struct ExploreOptions {
     std::string clock = "wall";
     std::optional<unsigned> core;     // that the servo stays on
     std::optional<uint16_t> osc_port; // where it is controlled; empty: nowhere
-    double seconds = std::numeric_limits<double>::infinity();
+    std::optional<double> seconds;    // until Ctrl-C, where it is not given
     bool json = false;
 };
 

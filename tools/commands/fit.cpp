@@ -9,7 +9,6 @@
 #include "tools/report/fit_report.h"
 #include "tools/report/measured_file.h"
 
-#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
@@ -41,15 +40,6 @@ ExitCode refused(const std::string& error, const std::string& hint)
     say_error(error);
     if (!hint.empty()) fmt::print(stderr, "  hint: {}\n", hint);
     return ExitCode::findings;
-}
-
-void set_direction(FitOptions& options, const std::string& text)
-{
-    const Parsed<glm::dvec2> direction = parse_vector2(text);
-    if (!direction) throw CLI::ValidationError("--direction", direction.error);
-    const double length = glm::length(direction.value);
-    if (!(length > 0) || !std::isfinite(length)) throw CLI::ValidationError("--direction", "it has no direction");
-    options.direction = direction.value / length;
 }
 
 // The preset beside the texture that it is of, in a file of its own that imports it.
@@ -132,11 +122,8 @@ Command fit_command(CLI::App& app)
     add_number(*command, "--speed", options->speed_m_per_s, "Of the hand along the stroke, m/s", NumberRange::positive);
     add_number(*command, "--stiffness", options->stiffness_n_per_m,
                "Of what pressed the tip: newtons of force per metre of height", NumberRange::positive);
-    command
-        ->add_option_function<std::string>(
-            "--direction", [options](const std::string& text) { set_direction(*options, text); },
-            "Of the stroke over the texture [1,0]")
-        ->type_name("X,Y");
+    add_parsed(*command, "--direction", "X,Y", options->direction, parse_direction2,
+               "Of the stroke over the texture [1,0]");
     add_parameters(*command, options->parameters);
     command->add_option("--seed", options->seed, "Of the guesses that the search begins with [1]");
     command->add_option("--preset", options->preset, "Write the texture `fitted`, a preset with what was found")

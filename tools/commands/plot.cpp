@@ -7,7 +7,6 @@
 #include "tools/plot/plot_texture.h"
 #include "tools/report/texture_picture.h"
 
-#include <cmath>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
@@ -48,15 +47,6 @@ void set_section(PlotOptions& options, const std::vector<std::string>& ends)
     options.section_m.emplace(points_m[0], points_m[1]);
 }
 
-void set_direction(PlotOptions& options, const std::string& text)
-{
-    const Parsed<glm::dvec3> direction = parse_vector(text);
-    if (!direction) throw CLI::ValidationError("--direction", direction.error);
-    const double length = glm::length(direction.value);
-    if (!(length > 0) || !std::isfinite(length)) throw CLI::ValidationError("--direction", "it has no direction");
-    options.direction = direction.value;
-}
-
 } // namespace
 
 Command plot_command(CLI::App& app)
@@ -78,16 +68,8 @@ Command plot_command(CLI::App& app)
     command->add_option("--size", options->size_px, "Side of the picture, pixels")
         ->check(CLI::Range(64, 8192))
         ->capture_default_str();
-    command
-        ->add_option_function<std::string>(
-            "--at",
-            [options](const std::string& text) {
-                const Parsed<glm::dvec3> point = parse_point(text);
-                if (!point) throw CLI::ValidationError(point.error);
-                options->center_m = point.value;
-            },
-            "Centre of the square, which lies in the plane z = const [0,0,0]")
-        ->type_name("X,Y,Z");
+    add_parsed(*command, "--at", "X,Y,Z", options->center_m, parse_point,
+               "Centre of the square, which lies in the plane z = const [0,0,0]");
     auto* section =
         command
             ->add_option_function<std::vector<std::string>>(
@@ -96,11 +78,8 @@ Command plot_command(CLI::App& app)
             ->expected(2)
             ->delimiter(' ')
             ->type_name("X,Y,Z");
-    command
-        ->add_option_function<std::string>(
-            "--direction", [options](const std::string& text) { set_direction(*options, text); },
-            "Draw a section through the centre along it, as long as the window")
-        ->type_name("X,Y,Z")
+    add_parsed(*command, "--direction", "X,Y,Z", options->direction, parse_direction,
+               "Draw a section through the centre along it, as long as the window")
         ->excludes(section);
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
                NumberRange::not_negative);

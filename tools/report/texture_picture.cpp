@@ -81,7 +81,7 @@ std::optional<plot::Picture> draw_texture(const std::shared_ptr<const jit::Compi
     view.center_m = options.center_m;
     view.section_m = options.section_m;
     if (options.direction) {
-        const glm::dvec3 half_m = options.window_m / 2 * glm::normalize(*options.direction);
+        const glm::dvec3 half_m = options.window_m / 2 * *options.direction;
         view.section_m.emplace(options.center_m - half_m, options.center_m + half_m);
     }
     view.is_bounded =

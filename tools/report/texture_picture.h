@@ -22,7 +22,7 @@ struct PictureOptions {
     double window_m = 0.02, footprint_m = 0;
     glm::dvec3 center_m{0};
     std::optional<std::pair<glm::dvec3, glm::dvec3>> section_m; // its ends
-    std::optional<glm::dvec3> direction;                        // of the section, of any length
+    std::optional<glm::dvec3> direction;                        // of the section, of length 1
     int size_px = 512;
 };
 
