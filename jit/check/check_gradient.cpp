@@ -168,6 +168,14 @@ struct Largest {
 
 } // namespace
 
+CheckBox box_of(const TextureRequest& request)
+{
+    CheckBox box;
+    std::ranges::copy(request.box_minimum_m, box.minimum_m);
+    std::ranges::copy(request.box_maximum_m, box.maximum_m);
+    return box;
+}
+
 GradientCheck check_gradient(const std::shared_ptr<const CompiledProgram>& program, const TextureBinding& binding,
                              const CheckBox& box, uint32_t count, uint64_t seed)
 {

@@ -24,6 +24,7 @@ struct CheckBox {
     double minimum_m[3] = {-0.025, -0.025, -0.025};
     double maximum_m[3] = {0.025, 0.025, 0.025};
 };
+CheckBox box_of(const TextureRequest& request);
 
 // Points that a fractal of five octaves passes in well under a second.
 inline constexpr uint32_t default_check_points = 300;

@@ -89,10 +89,7 @@ void set_times(std::vector<PrecisionFigures>& figures, const std::vector<Texture
 PrecisionChoice measure_precisions(const std::string& file, const std::string& texture, const TextureRequest& request,
                                    uint32_t count)
 {
-    CheckBox box;
-    std::copy(request.box_minimum_m, request.box_minimum_m + 3, box.minimum_m);
-    std::copy(request.box_maximum_m, request.box_maximum_m + 3, box.maximum_m);
-    const CheckPoints points(box, 1);
+    const CheckPoints points(box_of(request), 1);
     std::vector<haptel_point> asked;
     for (uint64_t i = 0; i < count; ++i) asked.push_back(points.random(i));
 

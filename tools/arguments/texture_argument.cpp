@@ -1,9 +1,12 @@
 #include "tools/arguments/texture_argument.h"
 
 #include "lang/abi/library_name.h"
+#include "lang/parameter_value.h"
 #include "libraries/find.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 
 namespace haptel::tools {
 
@@ -49,6 +52,23 @@ CLI::Option* add_parameters(CLI::App& app, ParameterTexts& parameters)
             "Value of a parameter; may be repeated")
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false);
+}
+
+TextureRequest request_in_cube(double side_m, double footprint_m)
+{
+    TextureRequest request;
+    std::fill_n(request.box_minimum_m, 3, -side_m / 2);
+    std::fill_n(request.box_maximum_m, 3, side_m / 2);
+    request.footprint_m = footprint_m;
+    return request;
+}
+
+ParameterTexts values_for(const ir::Texture& texture, const ParameterTexts& all)
+{
+    ParameterTexts taken;
+    std::ranges::copy_if(all, std::back_inserter(taken),
+                         [&](const auto& value) { return !lang::parameters_called(value.first, texture).empty(); });
+    return taken;
 }
 
 } // namespace haptel::tools

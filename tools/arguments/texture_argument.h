@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lang/abi/texture_binding.h"
+#include "lang/ir/ir.h"
 #include "tools/arguments/quantity.h"
 
 #include <CLI/CLI.hpp>
@@ -28,5 +29,11 @@ CLI::Option* add_texture(CLI::App& app, TextureArgument& texture);
 
 // --set name=value, any number of times.
 CLI::Option* add_parameters(CLI::App& app, ParameterTexts& parameters);
+
+// What is asked of a texture in a cube of that side round the origin.
+TextureRequest request_in_cube(double side_m, double footprint_m = 0);
+
+// Each texture takes the values whose names it has.
+ParameterTexts values_for(const ir::Texture& texture, const ParameterTexts& all);
 
 } // namespace haptel::tools

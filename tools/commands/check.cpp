@@ -204,23 +204,16 @@ void CheckRun::note_grain(const CheckedTexture& checked, std::span<const double>
 
 TextureRequest CheckRun::request_for(const ir::Texture& texture) const
 {
-    TextureRequest request;
-    std::fill(request.box_minimum_m, request.box_minimum_m + 3, -options.box_m / 2);
-    std::fill(request.box_maximum_m, request.box_maximum_m + 3, options.box_m / 2);
-    request.footprint_m = options.footprint_m;
+    TextureRequest request = request_in_cube(options.box_m, options.footprint_m);
     request.normal_turn_max_per_m = report.normal_turn_per_m;
-    for (const auto& value : options.parameters)
-        if (!lang::parameters_called(value.first, texture).empty()) request.parameters.push_back(value);
+    request.parameters = values_for(texture, options.parameters);
     return request;
 }
 
 lang::JumpSearch CheckRun::jump_search(const TextureBinding& felt) const
 {
     return [&felt, this]() -> std::optional<lang::SeenJump> {
-        jit::CheckBox box;
-        std::fill(box.minimum_m, box.minimum_m + 3, -options.box_m / 2);
-        std::fill(box.maximum_m, box.maximum_m + 3, options.box_m / 2);
-        const std::optional<jit::Jump> jump = jit::find_jump(felt, box);
+        const std::optional<jit::Jump> jump = jit::find_jump(felt, jit::box_of(request_in_cube(options.box_m)));
         if (!jump) return std::nullopt;
         return lang::SeenJump{jump->height_m, {jump->p_m[0], jump->p_m[1], jump->p_m[2]}, jump->time_s};
     };

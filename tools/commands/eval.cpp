@@ -127,13 +127,8 @@ Engine open_engine(const EvalOptions& options)
     const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file, compile);
     fmt::print(stderr, "{}", compiled.rendered(stderr_has_color()));
     if (!compiled.program) return {};
-    TextureRequest request;
+    TextureRequest request = request_in_cube(options.box_m, options.footprint_m);
     request.parameters = options.parameters;
-    request.footprint_m = options.footprint_m;
-    for (int axis = 0; axis < 3; ++axis) {
-        request.box_minimum_m[axis] = -options.box_m / 2;
-        request.box_maximum_m[axis] = options.box_m / 2;
-    }
     TextureResult bound = jit::make_binding(compiled.program, options.texture.name, request, jit::For::figures);
     fmt::print(stderr, "{}", bound.diagnostics);
     if (!bound.binding) return {};

@@ -1,5 +1,4 @@
 // haptel test: is every texture's gradient the gradient of its height, to rounding? Does every scene feel as it did?
-#include "lang/parameter_value.h"
 #include "tools/arguments/feel_files.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
@@ -41,22 +40,13 @@ struct TestOptions {
 
 class TestRun {
 public:
-    explicit TestRun(const TestOptions& chosen) : options(chosen)
-    {
-        for (size_t i = 0; i < 3; ++i) {
-            box.minimum_m[i] = request.box_minimum_m[i] = -options.box_m / 2;
-            box.maximum_m[i] = request.box_maximum_m[i] = options.box_m / 2;
-        }
-        request.footprint_m = options.footprint_m;
-    }
+    explicit TestRun(const TestOptions& chosen) : options(chosen) {}
 
     void test(const TextureTarget& target);
     TestReport report;
 
 private:
     const TestOptions& options;
-    jit::CheckBox box;
-    TextureRequest request; // parameters at their defaults, or as set
 
     void test(const TextureTarget& target, const std::shared_ptr<const jit::CompiledProgram>& program,
               const char* name);
@@ -67,11 +57,9 @@ private:
 void TestRun::test(const TextureTarget& target, const std::shared_ptr<const jit::CompiledProgram>& program,
                    const char* name)
 {
-    request.parameters.clear(); // each texture takes the values whose names it has
-    const ir::Texture& source = program->source_of(*program->find(name));
-    for (const auto& value : options.parameters)
-        if (!lang::parameters_called(value.first, source).empty()) request.parameters.push_back(value);
-    report.textures.push_back(test_texture(program, target.file, name, request, box, options.points, options.seed));
+    TextureRequest request = request_in_cube(options.box_m, options.footprint_m);
+    request.parameters = values_for(program->source_of(*program->find(name)), options.parameters);
+    report.textures.push_back(test_texture(program, target.file, name, request, options.points, options.seed));
 }
 
 // A library's own test says what holds by being flat; it may measure along lines, which is long work for the oracle.

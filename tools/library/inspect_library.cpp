@@ -122,10 +122,8 @@ private:
         if (doc.empty())
             problem(path,
                     fmt::format("texture '{}' has no doc comment: say above it, behind ///, what it feels like", name));
-        constexpr double half_m = library_box_m / 2;
-        const jit::CheckBox box{{-half_m, -half_m, -half_m}, {half_m, half_m, half_m}};
         const TestedTexture tested =
-            test_texture(program, path, name, library_request(), box, jit::default_check_points, points_seed);
+            test_texture(program, path, name, request_in_cube(library_box_m), jit::default_check_points, points_seed);
         if (!tested.passed())
             for (const std::string& reason : reasons(tested))
                 problem(path, fmt::format("texture '{}' does not pass haptel test: {}", name, reason));

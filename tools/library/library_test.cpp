@@ -4,6 +4,7 @@
 #include "lang/ir/cost.h"
 #include "libraries/manifest.h"
 #include "libraries/places.h"
+#include "tools/arguments/texture_argument.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,19 +51,9 @@ bool is_library_test(const fs::path& file)
            whole.lexically_relative(manifest.parent_path()).generic_string().starts_with(tests_folder);
 }
 
-TextureRequest library_request()
-{
-    TextureRequest request;
-    for (int axis = 0; axis < 3; ++axis) {
-        request.box_minimum_m[axis] = -library_box_m / 2;
-        request.box_maximum_m[axis] = library_box_m / 2;
-    }
-    return request;
-}
-
 std::string why_not_held(const std::shared_ptr<const jit::CompiledProgram>& tests, const std::string& name)
 {
-    const TextureResult bound = jit::make_binding(tests, name, library_request()); // needs no bounds
+    const TextureResult bound = jit::make_binding(tests, name, request_in_cube(library_box_m)); // needs no bounds
     if (!bound.binding) return bound.diagnostics;
     const uint32_t body = tests->source_of(*tests->find(name)).height_gradient;
     const uint64_t operations = std::max<uint64_t>(ir::operations_max(tests->module(), body), 1);

@@ -18,7 +18,4 @@ bool is_library_test(const std::filesystem::path& file);
 // Why the test does not hold, in words; empty: it is flat, to 1 nm, wherever it is tried.
 std::string why_not_held(const std::shared_ptr<const jit::CompiledProgram>& tests, const std::string& name);
 
-// A request for the textures of a library as they are: in that cube, with the defaults of their parameters.
-TextureRequest library_request();
-
 } // namespace haptel::tools

@@ -1,6 +1,5 @@
 #include "tools/report/bench_batch.h"
 
-#include "lang/parameter_value.h"
 #include "tools/arguments/texture_files.h"
 
 #include <algorithm>
@@ -13,9 +12,7 @@ BatchTextures batch_textures(const std::vector<std::string>& paths, const Parame
                              jit::Precision precision)
 {
     BatchTextures found;
-    TextureRequest request;
-    std::fill(request.box_minimum_m, request.box_minimum_m + 3, -box_m / 2);
-    std::fill(request.box_maximum_m, request.box_maximum_m + 3, box_m / 2);
+    TextureRequest request = request_in_cube(box_m);
     jit::TextureOptions options;
     options.entries = jit::Entries::both_and_batches;
     options.effort = jit::Effort::full;
@@ -29,10 +26,7 @@ BatchTextures batch_textures(const std::vector<std::string>& paths, const Parame
         }
         for (const haptel_texture& texture : compiled.program->textures()) {
             if (!texture.height_batch || !texture.height_gradient_batch) continue;
-            request.parameters.clear(); // each texture takes the values whose names it has
-            for (const auto& value : parameters)
-                if (!lang::parameters_called(value.first, compiled.program->source_of(texture)).empty())
-                    request.parameters.push_back(value);
+            request.parameters = values_for(compiled.program->source_of(texture), parameters);
             const TextureResult bound = jit::make_binding(compiled.program, texture.name, request, jit::For::figures);
             if (bound.binding)
                 found.textures.push_back({std::filesystem::path(target.file).filename().string() + ":" + texture.name,

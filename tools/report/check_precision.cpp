@@ -64,10 +64,7 @@ std::optional<AmplifiedPlace> find_amplified(const std::string& file, const std:
     if (!program) return std::nullopt;
     const TextureResult bound = jit::make_binding(program, texture, request, jit::For::figures);
     if (!bound.binding) return std::nullopt;
-    jit::CheckBox box;
-    std::copy(request.box_minimum_m, request.box_minimum_m + 3, box.minimum_m);
-    std::copy(request.box_maximum_m, request.box_maximum_m + 3, box.maximum_m);
-    const auto found = jit::check_gradient(program, *bound.binding, box).amplified;
+    const auto found = jit::check_gradient(program, *bound.binding, jit::box_of(request)).amplified;
     return found ? std::optional(place_of(*found, program->sources())) : std::nullopt;
 }
 

@@ -92,14 +92,13 @@ std::vector<std::string> reasons(const TestedTexture& texture)
 }
 
 TestedTexture test_texture(const std::shared_ptr<const jit::CompiledProgram>& program, const std::string& file,
-                           const std::string& name, const TextureRequest& request, const jit::CheckBox& box,
-                           uint32_t points, uint64_t seed)
+                           const std::string& name, const TextureRequest& request, uint32_t points, uint64_t seed)
 {
     TestedTexture tested{file, name, {}, {}, 0};
     const auto start = std::chrono::steady_clock::now();
     const TextureResult bound = jit::make_binding(program, name, request, jit::For::figures);
     if (bound.binding)
-        tested.check = jit::check_gradient(program, *bound.binding, box, points, seed);
+        tested.check = jit::check_gradient(program, *bound.binding, jit::box_of(request), points, seed);
     else
         tested.fault = bound.diagnostics;
     if (tested.check && tested.check->amplified)

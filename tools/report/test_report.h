@@ -23,10 +23,9 @@ struct TestedTexture {
     bool passed() const { return is_held_promise || (check && check->passed()); }
 };
 
-// A texture of `file` compared with the oracle, over that box; the request's box is the same.
+// A texture of `file` compared with the oracle, over the request's box.
 TestedTexture test_texture(const std::shared_ptr<const jit::CompiledProgram>& program, const std::string& file,
-                           const std::string& name, const TextureRequest& request, const jit::CheckBox& box,
-                           uint32_t points, uint64_t seed);
+                           const std::string& name, const TextureRequest& request, uint32_t points, uint64_t seed);
 
 // Why it did not pass, one line each.
 std::vector<std::string> reasons(const TestedTexture& texture);
