@@ -3,6 +3,7 @@
 #include "tools/arguments/precisions.h"
 #include "tools/arguments/quantity.h"
 #include "tools/commands/command.h"
+#include "tools/output/replace_file.h"
 #include "tools/output/terminal.h"
 #include "tools/report/bench_accuracy.h"
 #include "tools/report/bench_batch.h"
@@ -14,10 +15,10 @@
 #include "tools/report/bench_tick.h"
 #include "tools/report/bench_verdict.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fstream>
 #include <memory>
 #include <thread>
 
@@ -39,6 +40,11 @@ struct BenchOptions {
     double box_m = 0.05;
 };
 
+std::string in_words(const bench::Machine& machine)
+{
+    return fmt::format("{}, {} threads, {}", machine.cpu, machine.cores, machine.isa);
+}
+
 // What one kind of figures gives: rows for scripts, a table for people, and files beside them.
 struct Figures {
     Json rows = Json::array();
@@ -48,56 +54,71 @@ struct Figures {
     std::string error;                                                            // why there are none
 };
 
-Figures compile_figures(const BenchOptions& options)
+template <typename Row>
+Figures figures_of(const std::vector<Row>& rows)
 {
     Figures figures;
-    const bool are_ours = options.paths.empty();
-    const std::vector<bench::CompileRow> rows =
-        are_ours ? compile_rows(options.quick) : edit_rows(options.paths, options.quick, figures.error);
-    for (const bench::CompileRow& row : rows) figures.rows.push_back(to_json(row));
+    for (const Row& row : rows) figures.rows.push_back(to_json(row));
     figures.table = to_table(rows);
-    if (are_ours) {
-        figures.more.emplace_back("growth", bench::growth(rows, &bench::CompileRow::front_end));
-        figures.more.emplace_back("growth_to_code", bench::growth(rows, &bench::CompileRow::warm));
-        figures.table += growth_line(rows);
-    }
     figures.csv = to_csv(rows);
     return figures;
 }
 
-Figures accuracy_figures(const BenchOptions& options, const std::string& machine)
+// Of a benchmark that tells how far it is.
+template <typename Bench>
+auto measured(Bench bench, const BenchOptions& options)
 {
     Progress progress;
-    const std::vector<bench::AccuracyRow> rows =
-        bench::bench_accuracy(options.quick, [&](double share) { progress.show(share); });
-    Figures figures;
-    for (const bench::AccuracyRow& row : rows) figures.rows.push_back(to_json(row));
+    return bench(options.quick, [&](double share) { progress.show(share); });
+}
+
+Figures compile_figures(const BenchOptions& options)
+{
+    if (!options.paths.empty()) {
+        std::string error;
+        Figures figures = figures_of(edit_rows(options.paths, options.quick, error));
+        figures.error = error;
+        return figures;
+    }
+    const std::vector<bench::CompileRow> rows = compile_rows(options.quick);
+    Figures figures = figures_of(rows);
+    figures.more.emplace_back("growth", bench::growth(rows, &bench::CompileRow::front_end));
+    figures.more.emplace_back("growth_to_code", bench::growth(rows, &bench::CompileRow::warm));
+    figures.table += growth_line(rows);
+    return figures;
+}
+
+Figures accuracy_figures(const BenchOptions& options)
+{
+    const std::vector<bench::AccuracyRow> rows = measured(bench::bench_accuracy, options);
+    Figures figures = figures_of(rows);
     figures.more.emplace_back("alternatives", alternatives_json(rows));
     figures.more.emplace_back("differences", differences_json(rows));
-    figures.table = to_table(rows);
-    figures.csv = to_csv(rows);
+    const bench::Machine machine = bench::this_machine();
+    const std::string where = in_words(machine) + ", commit " + machine.commit;
     for (const auto& [name, shown] :
          {std::pair{"accuracy.png", Shown::gradient}, {"accuracy_height.png", Shown::height}})
-        figures.pictures.emplace_back(name, std::make_shared<plot::Picture>(draw_accuracy(rows, shown, machine)));
+        figures.pictures.emplace_back(name, std::make_shared<plot::Picture>(draw_accuracy(rows, shown, where)));
     return figures;
 }
 
 Figures batch_figures(const BenchOptions& options)
 {
     Figures figures;
+    const std::vector<std::string> paths =
+        options.paths.empty() ? std::vector<std::string>{"stdlib", "examples"} : options.paths;
     const BatchTextures found =
-        batch_textures(options.paths, options.parameters, options.box_m, precision_of(options.precision));
+        batch_textures(paths, options.parameters, options.box_m, precision_of(options.precision));
     figures.error = found.error;
     if (figures.error.empty() && found.textures.empty())
         figures.error = fmt::format("there is no texture in {}: name files or folders of them, haptel bench batch PATH",
-                                    fmt::join(options.paths, ", "));
+                                    fmt::join(paths, ", "));
     if (!figures.error.empty()) return figures;
     bench::BatchOptions batch{options.points, 9, {1}, options.box_m};
     if (const unsigned all = std::thread::hardware_concurrency(); all > 1) batch.threads.push_back(all);
     if (options.quick) batch.points = std::min<size_t>(batch.points, 50'000), batch.rounds = 3;
-    Progress progress;
-    const std::vector<bench::BatchRow> rows =
-        bench::bench_batch(found.textures, batch, [&](double share) { progress.show(share); });
+    const std::vector<bench::BatchRow> rows = measured(
+        [&](bool, const auto& progress) { return bench::bench_batch(found.textures, batch, progress); }, options);
     for (const bench::BatchRow& row : rows) figures.rows.push_back(to_json(row, options.precision));
     Json means = Json::array();
     for (const bench::BatchSummary& summary : bench::summary(rows)) means.push_back(to_json(summary));
@@ -109,59 +130,18 @@ Figures batch_figures(const BenchOptions& options)
     return figures;
 }
 
-Figures math_figures(const BenchOptions& options)
-{
-    Progress progress;
-    const std::vector<bench::MathRow> rows =
-        bench::bench_math(options.quick, [&](double share) { progress.show(share); });
-    Figures figures;
-    for (const bench::MathRow& row : rows) figures.rows.push_back(to_json(row));
-    figures.table = to_table(rows);
-    figures.csv = to_csv(rows);
-    return figures;
-}
-
 Figures tick_figures(const BenchOptions& options)
 {
-    Progress progress;
-    const std::vector<bench::TickRow> rows =
-        bench::bench_tick(options.quick, [&](double share) { progress.show(share); });
-    Figures figures;
-    for (const bench::TickRow& row : rows) figures.rows.push_back(to_json(row));
+    const std::vector<bench::TickRow> rows = measured(bench::bench_tick, options);
+    Figures figures = figures_of(rows);
     figures.more.emplace_back("growth", growth_json(rows));
-    figures.table = to_table(rows) + growth_table(rows);
-    figures.csv = to_csv(rows);
-    return figures;
-}
-
-Figures skip_figures(const BenchOptions& options)
-{
-    Progress progress;
-    const std::vector<bench::SkipRow> rows =
-        bench::bench_skip(options.quick, [&](double share) { progress.show(share); });
-    Figures figures;
-    for (const bench::SkipRow& row : rows) figures.rows.push_back(to_json(row));
-    figures.table = to_table(rows);
-    figures.csv = to_csv(rows);
-    return figures;
-}
-
-Figures servo_figures(const BenchOptions& options)
-{
-    Progress progress;
-    const std::vector<bench::ServoRow> rows =
-        bench::bench_servo(options.quick, [&](double share) { progress.show(share); });
-    Figures figures;
-    for (const bench::ServoRow& row : rows) figures.rows.push_back(to_json(row));
-    figures.table = to_table(rows);
-    figures.csv = to_csv(rows);
+    figures.table += growth_table(rows);
     return figures;
 }
 
 Figures scale_figures(const BenchOptions& options)
 {
-    Progress progress;
-    const bench::Scale scale = bench::bench_scale(options.quick, [&](double share) { progress.show(share); });
+    const bench::Scale scale = measured(bench::bench_scale, options);
     Figures figures;
     for (const bench::ScaleRow& row : scale.rows) figures.rows.push_back(to_json(row));
     Json builds = Json::array();
@@ -171,6 +151,22 @@ Figures scale_figures(const BenchOptions& options)
     figures.csv = to_csv(scale);
     return figures;
 }
+
+struct Kind {
+    const char *name, *measures;
+    Figures (*figures)(const BenchOptions&);
+};
+constexpr Kind kinds[] = {
+    {"compile", "from text to code", compile_figures},
+    {"accuracy", "error of the gradient against time, ours and plain C++", accuracy_figures},
+    {"batch", "many points of every texture", batch_figures},
+    {"math", "elementary functions", [](const auto& of) { return figures_of(measured(bench::bench_math, of)); }},
+    {"tick", "of the servo, by probe, mesh and number of objects", tick_figures},
+    {"scale", "how that grows, and what a surface costs", scale_figures},
+    {"skip", "what a tick leaves out", [](const auto& of) { return figures_of(measured(bench::bench_skip, of)); }},
+    {"servo", "how late it wakes, at 250 Hz to 10 kHz, ordinary and real-time, alone and beside others",
+     [](const auto& of) { return figures_of(measured(bench::bench_servo, of)); }},
+};
 
 // Every line of a table tells where it was taken.
 std::string stamped(const std::string& csv, const bench::Machine& machine)
@@ -192,25 +188,21 @@ std::string write_files(const std::string& folder, const std::string& what, cons
     const std::filesystem::path path(folder);
     std::vector<std::pair<std::string, std::string>> texts{{what + ".json", to_text(json) + "\n"}};
     if (!figures.csv.empty()) texts.emplace_back(what + ".csv", stamped(figures.csv, machine));
-    for (const auto& [name, text] : texts) {
-        std::ofstream written(path / name);
-        written << text;
-        written.close();
-        if (!written) return fmt::format("cannot write '{}'", (path / name).string());
-    }
+    for (const auto& [name, text] : texts)
+        if (const std::string why = write_file(path / name, text); !why.empty())
+            return fmt::format("cannot write '{}': {}", (path / name).string(), why);
     for (const auto& [name, picture] : figures.pictures)
         if (std::string error = picture->write_png((path / name).string()); !error.empty()) return error;
     return {};
 }
 
-ExitCode run(const BenchOptions& given)
+ExitCode run(const BenchOptions& options)
 {
-    if (!given.first.empty()) {
-        const std::optional<double> time_ms = bench::first_compile(given.first, given.edit);
+    if (!options.first.empty()) {
+        const std::optional<double> time_ms = bench::first_compile(options.first, options.edit);
         if (time_ms) fmt::print("{}\n", *time_ms);
         return time_ms ? ExitCode::fine : ExitCode::misuse;
     }
-    BenchOptions options = given;
     for (const CLI::Option* option : options.of_batch) {
         const bool is_file = option->get_positional();
         if (options.what == "batch" || (is_file && options.what == "compile") || option->count() == 0) continue;
@@ -219,17 +211,9 @@ ExitCode run(const BenchOptions& given)
                                         option->get_name()));
         return ExitCode::misuse;
     }
-    if (options.what == "batch" && options.paths.empty()) options.paths = {"stdlib", "examples"};
     const bench::Machine machine = bench::this_machine();
-    const std::string name = fmt::format("{}, {} threads, {}", machine.cpu, machine.cores, machine.isa);
-    const Figures figures = options.what == "compile" ? compile_figures(options)
-                            : options.what == "batch" ? batch_figures(options)
-                            : options.what == "math"  ? math_figures(options)
-                            : options.what == "tick"  ? tick_figures(options)
-                            : options.what == "skip"  ? skip_figures(options)
-                            : options.what == "scale" ? scale_figures(options)
-                            : options.what == "servo" ? servo_figures(options)
-                                                      : accuracy_figures(options, name + ", commit " + machine.commit);
+    const std::string name = in_words(machine);
+    const Figures figures = std::ranges::find(kinds, options.what, &Kind::name)->figures(options);
     if (!figures.error.empty()) {
         say_error(figures.error);
         return ExitCode::findings;
@@ -258,15 +242,13 @@ Command bench_command(CLI::App& app)
     const auto options = std::make_shared<BenchOptions>();
     CLI::App* command = app.add_subcommand("bench", "Measure compile times, accuracy, batches, math, the tick of the "
                                                     "servo, its scale, its skip and servo deadlines");
-    command
-        ->add_option(
-            "what", options->what,
-            "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++; "
-            "batch: many points of every texture; math: elementary functions; tick: of the servo, by probe, mesh "
-            "and number of objects; scale: how that grows, and what a surface costs; skip: what a tick leaves out; "
-            "servo: how late it wakes, at 250 Hz to 10 kHz, ordinary and real-time, alone and beside others")
-        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick", "scale", "skip", "servo"}))
-        ->capture_default_str();
+    std::vector<std::string> names;
+    std::string measures = "What to measure:";
+    for (const Kind& kind : kinds) {
+        names.emplace_back(kind.name);
+        measures += fmt::format("\n  {}: {}", kind.name, kind.measures);
+    }
+    command->add_option("what", options->what, measures)->check(CLI::IsMember(names))->capture_default_str();
     options->of_batch = {
         command
             ->add_option("paths", options->paths,
