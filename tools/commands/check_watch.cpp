@@ -2,11 +2,10 @@
 
 #include "jit/live/file_watch.h"
 #include "lang/text/source.h"
+#include "tools/commands/interrupt.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -27,15 +26,6 @@ using Clock = std::chrono::steady_clock;
 // As where a texture follows its file (jit/live/live_texture.cpp).
 constexpr auto unasked = 1s;
 constexpr auto absence_awaited = 500ms;
-
-std::atomic<bool> has_ended = false;
-static_assert(std::atomic<bool>::is_always_lock_free); // set by a signal
-
-extern "C" void on_watch_interrupt(int signal)
-{
-    has_ended = true;
-    std::signal(signal, SIG_DFL);
-}
 
 // Another one after each save, whatever was saved. Nothing: there is no such file.
 using FileState = std::optional<std::tuple<dev_t, ino_t, off_t, time_t, long>>;
@@ -89,7 +79,7 @@ std::optional<FileStates> changed(jit::FileWatch& watch, const FileStates& known
     constexpr auto never = Clock::time_point::max();
     jit::Settling settling;
     Clock::time_point gone_since = never;
-    for (Clock::time_point due = Clock::now(); !has_ended;) { // at once: something may have changed meanwhile
+    for (Clock::time_point due = Clock::now(); !interrupted();) { // at once: something may have changed meanwhile
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now());
         pollfd descriptor{watch.descriptor(), POLLIN, 0};
         poll(&descriptor, 1, static_cast<int>(std::max<int64_t>(left.count(), 0)));
@@ -116,9 +106,7 @@ std::optional<FileStates> changed(jit::FileWatch& watch, const FileStates& known
 
 void repeat_at_each_save(const std::function<std::set<std::string>()>& work)
 {
-    has_ended = false;
-    std::signal(SIGINT, on_watch_interrupt);
-    std::signal(SIGTERM, on_watch_interrupt);
+    listen_for_interrupts();
     jit::FileWatch watch;
     FileStates known;
     print_separator("checked, and again at each save; Ctrl-C ends");
