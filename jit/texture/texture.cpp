@@ -115,11 +115,17 @@ TextureOptions servo_options()
     return {.entries = Entries::height_gradient, .effort = Effort::draft, .iterations_in_lanes = true};
 }
 
+lang::CompileResult check_texture(std::string text, const TextureOptions& options)
+{
+    return lang::compile({options.name, std::move(text)}, language_options(options));
+}
+
 lang::CompileResult check_texture_file(const std::string& path, TextureOptions options)
 {
+    options.name = path;
     options.load_import = load_beside;
     SourceText source = read_source(path);
-    if (source.error.empty()) return lang::compile({path, std::move(source.text)}, language_options(options));
+    if (source.error.empty()) return check_texture(std::move(source.text), options);
     lang::CompileResult result;
     result.files = {path};
     result.sources.add({path, {}});
@@ -145,7 +151,7 @@ CompiledTextures with_code(lang::CompileResult checked, const TextureOptions& op
 CompiledTextures compile_texture(std::string_view text, const TextureOptions& options)
 {
     const std::future<void> starting = start_engine();
-    return with_code(lang::compile({options.name, std::string(text)}, language_options(options)), options);
+    return with_code(check_texture(std::string(text), options), options);
 }
 
 CompiledTextures compile_texture_file(const std::string& path, TextureOptions options)

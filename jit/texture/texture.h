@@ -95,6 +95,7 @@ struct CompiledTextures {
 CompiledTextures compile_texture(std::string_view text, const TextureOptions& options = {});
 
 // The first half of it: what there is to say about the text, and its IR; no code is made.
+lang::CompileResult check_texture(std::string text, const TextureOptions& options = {});
 lang::CompileResult check_texture_file(const std::string& path, TextureOptions options = {});
 // The second half: code of what the first one made, if it made something.
 CompiledTextures with_code(lang::CompileResult checked, const TextureOptions& options);

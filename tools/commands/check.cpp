@@ -7,7 +7,6 @@
 #include "lang/parameter_value.h"
 #include "lang/text/near_name.h"
 #include "libraries/find.h"
-#include "stdlib/stdlib.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/arguments/texture_files.h"
@@ -42,25 +41,6 @@ struct CheckOptions {
     const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
     std::string code;                     // empty: all are listed
 };
-
-lang::CompileResult compile_text(const std::string& path, std::string text)
-{
-    lang::CompileOptions options;
-    for (const stdlib::LibraryFile& file : stdlib::library())
-        options.library.push_back({std::string(file.name), std::string(file.text)});
-    options.load_import = jit::load_beside;
-    return lang::compile({path, std::move(text)}, options);
-}
-
-lang::CompileResult compile_file(const std::string& path)
-{
-    jit::SourceText source = jit::read_source(path);
-    if (source.error.empty()) return compile_text(path, std::move(source.text));
-    lang::CompileResult result;
-    result.sources.add({path, {}});
-    result.diagnostics.error({}, "unreadable-file", source.error).hint = source.hint;
-    return result;
-}
 
 class CheckRun {
 public:
@@ -120,7 +100,8 @@ void CheckRun::fix(const std::string& path)
 {
     const jit::SourceText source = jit::read_source(path);
     if (!source.error.empty()) return; // said where it is compiled
-    const Mended mended = mend(source.text, [&](const std::string& text) { return compile_text(path, text); });
+    const jit::TextureOptions of_file{.name = path, .load_import = jit::load_beside};
+    const Mended mended = mend(source.text, [&](const std::string& text) { return jit::check_texture(text, of_file); });
     if (mended.applied > 0) {
         const std::string fault = replace_file(path, mended.text);
         if (!fault.empty())
@@ -245,7 +226,7 @@ void CheckRun::pick_precision(CheckedTexture& checked)
 void CheckRun::check(const std::string& path)
 {
     if (options.fix) fix(path);
-    lang::CompileResult result = compile_file(path);
+    lang::CompileResult result = jit::check_texture_file(path);
     files.insert(path);
     files.insert(result.files.begin(), result.files.end());
     lang::Diagnostics& diagnostics = result.diagnostics;

@@ -1,10 +1,9 @@
 // haptel info: what there is to call, and what a file's textures are.
 #include "jit/texture/source_file.h"
+#include "jit/texture/texture.h"
 #include "lang/abi/library_name.h"
-#include "lang/compile.h"
 #include "lang/syntax/parser.h"
 #include "lang/text/near_name.h"
-#include "stdlib/stdlib.h"
 #include "tools/commands/command.h"
 #include "tools/commands/info_library.h"
 #include "tools/commands/reference.h"
@@ -141,16 +140,7 @@ ExitCode show_file(const InfoOptions& options)
 {
     const jit::TextureReference named = jit::split_reference(options.what);
     const std::string &path = named.file, &wanted = named.texture;
-    jit::SourceText source = jit::read_source(path);
-    if (!source.error.empty()) {
-        say_error(fmt::format("{}: {}", path, source.error));
-        return ExitCode::findings;
-    }
-    lang::CompileOptions compile_options;
-    for (const stdlib::LibraryFile& file : stdlib::library())
-        compile_options.library.push_back({std::string(file.name), std::string(file.text)});
-    compile_options.load_import = jit::load_beside;
-    const lang::CompileResult result = lang::compile({path, std::move(source.text)}, compile_options);
+    const lang::CompileResult result = jit::check_texture_file(path);
     if (!result.program) {
         fmt::print(stderr, "{}", lang::render(result.diagnostics.all(), result.sources, stderr_has_color()));
         return ExitCode::findings;
