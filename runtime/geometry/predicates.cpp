@@ -124,31 +124,6 @@ int side_of_line(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& e0,
     return -first_sign(n.x, n.y, n.z);
 }
 
-namespace {
-
-void fill(Crossing& crossing, int side_p, const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a,
-          const glm::dvec3& b, const glm::dvec3& c)
-{
-
-    ExactNormal n = exact_normal(a, b, c);
-    if (side_p > 0) n = {-n.x, -n.y, -n.z}; // along the segment, so that the denominator is positive
-    crossing.side = side_p > 0 ? 0 : 1;
-    crossing.numerator = dot(n, Exact3(a - p));
-    crossing.denominator = dot(n, Exact3(q - p)); // not 0: ties move both ends alike
-    crossing.normal = n;
-}
-
-} // namespace
-
-bool crosses_plane(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b,
-                   const glm::dvec3& c, Crossing& crossing) noexcept
-{
-    const int side_p = side_of_plane(a, b, c, p);
-    if (side_p == side_of_plane(a, b, c, q)) return false;
-    fill(crossing, side_p, p, q, a, b, c);
-    return true;
-}
-
 bool crosses(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
              Crossing& crossing) noexcept
 {
@@ -156,7 +131,12 @@ bool crosses(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, cons
     if (side_p == side_of_plane(a, b, c, q)) return false;
     const int ab = side_of_line(p, q, a, b);
     if (ab != side_of_line(p, q, b, c) || ab != side_of_line(p, q, c, a)) return false;
-    fill(crossing, side_p, p, q, a, b, c);
+    ExactNormal n = exact_normal(a, b, c);
+    if (side_p > 0) n = {-n.x, -n.y, -n.z}; // along the segment, so that the denominator is positive
+    crossing.side = side_p > 0 ? 0 : 1;
+    crossing.numerator = dot(n, Exact3(a - p));
+    crossing.denominator = dot(n, Exact3(q - p)); // not 0: ties move both ends alike
+    crossing.normal = n;
     return true;
 }
 

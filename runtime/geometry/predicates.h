@@ -48,11 +48,7 @@ struct Crossing {
     double fraction() const noexcept { return double(numerator) / double(denominator); }
 };
 
-// Whether the segment from p to q crosses the plane of the triangle; if so fills `crossing` but for its face.
-bool crosses_plane(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b,
-                   const glm::dvec3& c, Crossing& crossing) noexcept;
-
-// The same for the triangle itself.
+// Whether the segment from p to q crosses the triangle; if so fills `crossing` but for its face.
 bool crosses(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
              Crossing& crossing) noexcept;
 

@@ -103,15 +103,15 @@ TEST_CASE("orientations and tie breaks agree with integers of any size")
     REQUIRE(exact_needed > 200);
 }
 
-TEST_CASE("a segment on one side of a plane does not cross it, one from side to side does")
+TEST_CASE("a segment on one side of a triangle does not cross it, one from side to side does")
 {
     constexpr double one = 65536; // of the lattice
     const glm::dvec3 a(0), b(8 * one, 0, 0), c(0, 8 * one, 0);
     Crossing crossing;
-    CHECK_FALSE(crosses_plane(one * glm::dvec3(1, 1, 1), one * glm::dvec3(1, 1, 5), a, b, c, crossing));
-    CHECK_FALSE(crosses_plane(one * glm::dvec3(1, 1, -1), one * glm::dvec3(90, 1, -5), a, b, c, crossing));
-    CHECK(crosses_plane(one * glm::dvec3(90, 1, 1), one * glm::dvec3(90, 1, -3), a, b, c,
-                        crossing)); // outside of the triangle, too
+    CHECK_FALSE(crosses(one * glm::dvec3(1, 1, 1), one * glm::dvec3(1, 1, 5), a, b, c, crossing));
+    CHECK_FALSE(crosses(one * glm::dvec3(1, 1, -1), one * glm::dvec3(90, 1, -5), a, b, c, crossing));
+    CHECK_FALSE(crosses(one * glm::dvec3(90, 1, 1), one * glm::dvec3(90, 1, -3), a, b, c, crossing)); // beside it
+    CHECK(crosses(one * glm::dvec3(1, 1, 1), one * glm::dvec3(1, 1, -3), a, b, c, crossing));
     CHECK(crossing.fraction() == 0.25);
 }
 
