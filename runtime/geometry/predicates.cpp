@@ -22,11 +22,6 @@ int sign(Int128 v)
     return v > 0 ? 1 : v < 0 ? -1 : 0;
 }
 
-int first_sign(Int128 x, Int128 y, Int128 z)
-{
-    return x != 0 ? sign(x) : y != 0 ? sign(y) : sign(z);
-}
-
 struct Exact3 {
     Int128 x, y, z;
     explicit Exact3(const glm::dvec3& v) : x(int64_t(v.x)), y(int64_t(v.y)), z(int64_t(v.z)) {}
@@ -81,9 +76,9 @@ int compare_products(Int128 a, Int128 b, Int128 c, Int128 d)
 
 } // namespace
 
-bool ExactNormal::points_forward() const noexcept
+int ExactNormal::first_sign() const noexcept
 {
-    return first_sign(x, y, z) > 0;
+    return x != 0 ? sign(x) : y != 0 ? sign(y) : sign(z);
 }
 
 glm::dvec3 ExactNormal::unit() const noexcept
@@ -104,10 +99,8 @@ int orientation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, c
 
 int side_of_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p) noexcept
 {
-    if (const int rounded = rounded_sign(b - a, c - a, p - a)) return rounded;
-    const ExactNormal n = exact_normal(a, b, c);
-    const int exact = sign(dot(n, Exact3(p - a)));
-    return exact ? exact : first_sign(n.x, n.y, n.z);
+    if (const int exact = orientation(a, b, c, p)) return exact;
+    return exact_normal(a, b, c).first_sign();
 }
 
 int line_orientation(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& e0, const glm::dvec3& e1) noexcept
@@ -120,8 +113,7 @@ int side_of_line(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& e0,
 {
     if (const int exact = line_orientation(p, q, e0, e1)) return exact;
     // (q-p) x (e1-e0) . (e0-p) changes by -(q-p) x (e1-e0) . (e, e^2, e^3) when p and q move.
-    const ExactNormal n = cross(Exact3(q - p), Exact3((e1 - e0) * per_spacing));
-    return -first_sign(n.x, n.y, n.z);
+    return -cross(Exact3(q - p), Exact3((e1 - e0) * per_spacing)).first_sign();
 }
 
 bool crosses(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,

@@ -33,7 +33,8 @@ int line_orientation(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3&
 struct ExactNormal {
     Int128 x, y, z;
     bool is_zero() const { return x == 0 && y == 0 && z == 0; }
-    bool points_forward() const noexcept; // along its first axis that it has a component of
+    int first_sign() const noexcept; // of its first component that is not 0
+    bool points_forward() const noexcept { return first_sign() > 0; }
     glm::dvec3 unit() const noexcept;
 };
 ExactNormal exact_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) noexcept;

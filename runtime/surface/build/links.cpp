@@ -38,18 +38,9 @@ struct RadialOrder {
     {
         const glm::dvec3 &a = v[reference.low], &b = v[reference.high], &r = v[reference.tip];
         if (const int side = orientation(a, b, r, v[wing.tip])) return side > 0 ? 1 : 3;
-        return same_direction(wing) ? 0 : 2;
+        return points_forward(wing) == points_forward(reference) ? 0 : 2; // in one plane their normals are parallel
     }
-
-    // Two coplanar wings lie on one side of the edge if their exact normals agree in sign.
-    bool same_direction(const Wing& wing) const
-    {
-        const ExactNormal n = exact_normal(v[reference.low], v[reference.high], v[reference.tip]);
-        const ExactNormal m = exact_normal(v[wing.low], v[wing.high], v[wing.tip]);
-        const Int128 of_n = n.x != 0 ? n.x : n.y != 0 ? n.y : n.z;
-        const Int128 of_m = n.x != 0 ? m.x : n.y != 0 ? m.y : m.z;
-        return (of_n > 0) == (of_m > 0);
-    }
+    bool points_forward(const Wing& w) const { return exact_normal(v[w.low], v[w.high], v[w.tip]).points_forward(); }
 
     bool operator()(const Wing& i, const Wing& j) const
     {
@@ -57,7 +48,7 @@ struct RadialOrder {
         if (qi != qj) return qi < qj;
         if (const int turn = orientation(v[i.low], v[i.high], v[i.tip], v[j.tip])) return turn > 0;
         // They lie on each other: in the order in which a path meets them, see earlier().
-        return exact_normal(v[i.low], v[i.high], v[i.tip]).points_forward() ? i.face > j.face : i.face < j.face;
+        return points_forward(i) ? i.face > j.face : i.face < j.face;
     }
 };
 
