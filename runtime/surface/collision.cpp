@@ -7,19 +7,6 @@
 
 namespace haptel::runtime {
 
-StartsOn StartsOn::on_edge(uint32_t vertex0, uint32_t vertex1)
-{
-    StartsOn start;
-    start.vertex0_ = vertex0;
-    start.vertex1_ = vertex1;
-    return start;
-}
-
-StartsOn StartsOn::on_vertex(uint32_t vertex)
-{
-    return on_edge(vertex, vertex);
-}
-
 bool StartsOn::skips(uint32_t face, const Face& data) const
 {
     const auto has = [&](uint32_t vertex) {

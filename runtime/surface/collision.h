@@ -20,9 +20,8 @@ struct CollisionCount {
 class StartsOn {
 public:
     static StartsOn nothing() { return {}; }
-
-    static StartsOn on_edge(uint32_t vertex0, uint32_t vertex1);
-    static StartsOn on_vertex(uint32_t vertex);
+    static StartsOn on_edge(uint32_t vertex0, uint32_t vertex1) { return {vertex0, vertex1}; }
+    static StartsOn on_vertex(uint32_t vertex) { return {vertex, vertex}; }
     // One more face to pass over.
     void also(uint32_t face) { faces_[face_count_++] = face; }
 
@@ -30,8 +29,10 @@ public:
 
 private:
     static constexpr uint32_t none = ~0u;
-    uint32_t vertex0_ = none, vertex1_ = none;
-    uint32_t faces_[4] = {none, none, none, none};
+    StartsOn(uint32_t vertex0 = none, uint32_t vertex1 = none) : vertex0_(vertex0), vertex1_(vertex1) {}
+
+    uint32_t vertex0_, vertex1_;
+    uint32_t faces_[3] = {none, none, none}; // a face has no more neighbours
     uint32_t face_count_ = 0;
 };
 
