@@ -4,8 +4,6 @@
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/collision.h"
 
-#include <cmath>
-
 namespace haptel::runtime {
 
 Surface::Surface() = default;
@@ -44,35 +42,14 @@ double Surface::gap_to_box_m(const glm::dvec3& from_m, const glm::dvec3& to_m) c
 std::optional<SegmentHit> Surface::first_hit(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept
 {
     if (!finite(from_m) || !finite(to_m)) return std::nullopt;
-
-    // Only the part within the workspace has lattice points; the object lies well inside it.
-    const glm::dvec3 along = to_m - from_m;
-    double enter = 0, leave = 1;
-    for (int k = 0; k < 3; ++k) {
-        const double reach = 0.5 * Lattice::workspace * lattice.unit_m;
-        const double low = lattice.centre_m[k] - reach - from_m[k], high = lattice.centre_m[k] + reach - from_m[k];
-        if (along[k] == 0) {
-            if (low > 0 || high < 0) return std::nullopt;
-            continue;
-        }
-        enter = std::max(enter, std::min(low / along[k], high / along[k]));
-        leave = std::min(leave, std::max(low / along[k], high / along[k]));
-    }
-    if (!(enter <= leave)) return std::nullopt;
-    const glm::dvec3 from = lattice.snap(from_m + enter * along), to = lattice.snap(from_m + leave * along);
-
+    glm::dvec3 from = lattice.units(from_m), to = lattice.units(to_m);
     Crossing crossing;
     CollisionCount count;
-    if (!first_crossing(*this, from, to, StartsOn::nothing(), crossing, count)) return std::nullopt;
+    if (!Lattice::clip_to_workspace(from, to) || !first_crossing(*this, from, to, StartsOn::nothing(), crossing, count))
+        return std::nullopt;
     const glm::dvec3 point = crossing_point(*this, crossing, from, to);
-    SegmentHit hit;
-    hit.face = crossing.face;
-    hit.side = crossing.side;
-    hit.fraction = enter + (leave - enter) * crossing.fraction();
-    hit.point_m = lattice.metres(point);
-    hit.barycentric = barycentric_of(*this, crossing.face, point);
-    hit.facet_normal = facet_normal(crossing.face, crossing.side);
-    return hit;
+    return SegmentHit{crossing.face, crossing.side, lattice.metres(point), barycentric_of(*this, crossing.face, point),
+                      facet_normal(crossing.face, crossing.side)};
 }
 
 } // namespace haptel::runtime

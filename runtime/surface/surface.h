@@ -85,8 +85,7 @@ struct Roundness {
 
 struct SegmentHit {
     uint32_t face = 0;
-    uint32_t side = 0;   // that faces the start of the segment
-    double fraction = 0; // of the segment, 0 at its start
+    uint32_t side = 0; // that faces the start of the segment
     glm::dvec3 point_m{0};
     glm::dvec3 barycentric{1, 0, 0};
     glm::dvec3 facet_normal{0, 0, 1}; // unit, toward the start of the segment
