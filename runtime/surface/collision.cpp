@@ -18,24 +18,6 @@ bool StartsOn::skips(uint32_t face, const Face& data) const
 
 namespace {
 
-// Whether the segment may meet the box; says yes in doubt. Lattice boxes and ends are exact, products are not: hence
-// the widening by one unit.
-bool may_meet(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& minimum, const glm::dvec3& maximum)
-{
-    double enter = 0, leave = 1;
-    for (int k = 0; k < 3; ++k) {
-        const double low = minimum[k] - 1 - from[k], high = maximum[k] + 1 - from[k], along = to[k] - from[k];
-        if (along == 0) {
-            if (low > 0 || high < 0) return false;
-            continue;
-        }
-        const double a = low / along, b = high / along;
-        enter = std::max(enter, std::min(a, b) - 1e-14);
-        leave = std::min(leave, std::max(a, b) + 1e-14);
-    }
-    return enter <= leave;
-}
-
 class FirstCrossing final : public SegmentVisitor {
 public:
     FirstCrossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,
@@ -119,7 +101,6 @@ bool first_crossing(const Surface& surface, const glm::dvec3& from, const glm::d
                     Crossing& crossing, CollisionCount& count) noexcept
 {
     ++count.sweeps;
-    if (!may_meet(from, to, surface.box_minimum, surface.box_maximum)) return false;
     FirstCrossing first(surface, from, to, start, crossing, count);
     surface.tree->segment(from, to, first);
     return first.found;

@@ -1,5 +1,6 @@
-// Collision of a segment with the object in the paper's three stages: the object's box, the triangles' boxes,
-// triangles. The last is exact, so the first crossing is never lost and never out of order. Lattice units.
+// Collision of a segment with the object in the paper's three stages: the object's box, which is the root of the tree,
+// the triangles' boxes, triangles. The last is exact, so the first crossing is never lost and never out of order.
+// Lattice units.
 #pragma once
 
 #include "runtime/geometry/predicates.h"
