@@ -17,11 +17,6 @@ Lattice Lattice::around(const glm::dvec3& minimum_m, const glm::dvec3& maximum_m
     return lattice;
 }
 
-glm::dvec3 Lattice::snap(const glm::dvec3& point_m) const noexcept
-{
-    return snap_units((point_m - centre_m) / unit_m);
-}
-
 bool Lattice::clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept
 {
     from = glm::clamp(from, -0x1p100, 0x1p100); // of places farther away the way would not be finite
@@ -47,7 +42,7 @@ bool Lattice::clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept
 
 glm::dvec3 Lattice::snap_vertex(const glm::dvec3& point_m) const noexcept
 {
-    return glm::round((point_m - centre_m) / (unit_m * vertex_spacing)) * vertex_spacing;
+    return glm::round(units(point_m) / vertex_spacing) * vertex_spacing;
 }
 
 } // namespace haptel::runtime

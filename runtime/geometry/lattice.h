@@ -27,7 +27,8 @@ struct Lattice {
     // The lattice whose vertices can hold the box. The box must be finite; a box without extent is taken as 1 m wide.
     static Lattice around(const glm::dvec3& minimum_m, const glm::dvec3& maximum_m) noexcept;
 
-    glm::dvec3 snap(const glm::dvec3& point_m) const noexcept;        // nearest point, clamped to the workspace
+    // Nearest point, clamped to the workspace.
+    glm::dvec3 snap(const glm::dvec3& point_m) const noexcept { return snap_units(units(point_m)); }
     glm::dvec3 snap_vertex(const glm::dvec3& point_m) const noexcept; // nearest point of the coarse lattice
     // The same of a place in lattice units. Asked for in every tick, as the next one is.
     static glm::dvec3 snap_units(const glm::dvec3& units) noexcept
@@ -36,7 +37,6 @@ struct Lattice {
         return (glm::clamp(units, -workspace, workspace) + round) - round;
     }
     glm::dvec3 units(const glm::dvec3& point_m) const noexcept { return (point_m - centre_m) / unit_m; } // not rounded
-    static bool beyond_workspace(const glm::dvec3& units) noexcept { return beyond(units, workspace); }
     // Whether a coordinate is larger, of either sign: what rounding leaves has any sign, and is asked for every tick.
     static bool beyond(const glm::dvec3& v, double bound) noexcept
     {
