@@ -3,11 +3,10 @@
 #include "runtime/surface/build/meeting.h"
 
 #include "runtime/geometry/nearest_point.h"
-#include "runtime/surface/box_tree.h"
 #include "runtime/surface/corner.h"
+#include "runtime/surface/swept_region.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace haptel::runtime {
@@ -54,49 +53,6 @@ bool is_near(const Segment& edge, const std::array<glm::dvec3, 3>& corner, doubl
     return false;
 }
 
-// Sees whether the edge comes near to a face.
-class FacesNear final : public BallVisitor {
-public:
-    FacesNear(const Surface& surface, double gap, BuildWork& work) : surface_(surface), gap_(gap), work_(work) {}
-
-    bool any(const Segment& edge)
-    {
-        edge_ = edge;
-        reach_ = 0.5 * glm::distance(edge.from, edge.to) + gap_;
-        surface_.tree->ball(edge.at(0.5), reach_, *this);
-        return found_;
-    }
-    double visit(uint32_t face) noexcept override
-    {
-        const auto& v = surface_.faces[face].vertex;
-        found_ = is_near(edge_, {surface_.vertices[v[0]], surface_.vertices[v[1]], surface_.vertices[v[2]]}, gap_);
-        return !found_ && work_.spend() ? reach_ : 0;
-    }
-
-private:
-    const Surface& surface_;
-    double gap_;
-    BuildWork& work_;
-    Segment edge_{};
-    double reach_ = 0;
-    bool found_ = false;
-};
-
-// Those of a surface that come near to a place.
-class Faces final : public BallVisitor {
-public:
-    explicit Faces(double radius) : radius_(radius) {}
-    double visit(uint32_t face) noexcept override
-    {
-        numbers.push_back(face);
-        return radius_;
-    }
-    std::vector<uint32_t> numbers;
-
-private:
-    double radius_;
-};
-
 struct FaceBox {
     glm::dvec3 minimum, maximum;
 };
@@ -121,18 +77,14 @@ bool clip(Segment& edge, const FaceBox& box)
 bool edges_meet_faces(const Surface& edges, const Placement& of_edges, const Surface& faces, const Placement& of_faces,
                       double gap_m, BuildWork& work)
 {
-    // A long edge is looked at piece by piece, as only little of a fine surface comes near to each.
-    constexpr double pieces_most = 64;
     const double gap = gap_m / faces.lattice.unit_m;
     const FaceBox box{faces.box_minimum - gap, faces.box_maximum + gap};
-    const double diagonal = glm::distance(box.minimum, box.maximum);
     const glm::dvec3 middle = edges.lattice.units(
         of_edges.to_object(of_faces.to_world(faces.lattice.metres(0.5 * (box.minimum + box.maximum)))));
-    const double radius = 0.5 * diagonal * faces.lattice.unit_m / edges.lattice.unit_m;
-    Faces candidates(radius);
-    edges.tree->ball(middle, radius, candidates);
-    FacesNear near(faces, gap, work);
-    for (const uint32_t candidate : candidates.numbers) {
+    const double radius = 0.5 * glm::distance(box.minimum, box.maximum) * faces.lattice.unit_m / edges.lattice.unit_m;
+    std::vector<uint32_t> candidates;
+    (void)edges.tree->ball(middle, radius, edges.faces.size(), candidates);
+    for (const uint32_t candidate : candidates) {
         glm::dvec3 corner[3];
         for (uint32_t i = 0; i < 3; ++i)
             corner[i] = faces.lattice.units(of_faces.to_object(
@@ -141,9 +93,14 @@ bool edges_meet_faces(const Surface& edges, const Placement& of_edges, const Sur
             if (!work.spend()) return false;
             Segment edge{corner[i], corner[next(i)]};
             if (!clip(edge, box)) continue;
-            const double count = std::ceil(pieces_most * glm::distance(edge.from, edge.to) / diagonal);
-            for (double k = 0; k < std::max(1.0, count); ++k)
-                if (near.any({edge.at(k / std::max(1.0, count)), edge.at((k + 1) / std::max(1.0, count))})) return true;
+            bool found = false;
+            const auto looks_on = [&](uint32_t face) {
+                const auto& v = faces.faces[face].vertex;
+                found = is_near(edge, {faces.vertices[v[0]], faces.vertices[v[1]], faces.vertices[v[2]]}, gap);
+                return !found && work.spend();
+            };
+            (void)faces.tree->for_each(SweptRegion(edge.from, edge.to, edge.from, edge.to, gap), looks_on);
+            if (found) return true;
         }
     }
     return false;
