@@ -21,37 +21,15 @@ constexpr double crack = 2097152;
 // What a corner that a border comes near takes, in looks: it comes from memory where there are millions.
 constexpr size_t looks_per_corner = 3;
 
-struct BorderEdge {
-    uint32_t face, edge;
-};
-
-std::vector<BorderEdge> border_edges(const Surface& surface, unsigned threads)
-{
-    const Edges edges(surface, threads);
-    std::vector<BorderEdge> borders;
-    for (std::size_t low = 0; low < edges.vertices(); ++low)
-        edges.visit(low, [&](std::span<const uint32_t> codes) {
-            const HalfEdge at{codes[0]};
-            if (codes.size() == 1) borders.push_back({at.face(), at.edge()});
-        });
-    return borders;
-}
-
-// Vertices in a tree of halves, to ask which lie in a box. A half is parted across its widest side: of vertices in a
-// line or a plane that leaves as few to look at as of those in space.
-class VerticesInBox {
+// Vertices in a tree of halves, to ask which lie near a segment. A half is parted across its widest side: of vertices
+// in a line or a plane that leaves as few to look at as of those in space.
+class NearVertices {
 public:
-    VerticesInBox(const std::vector<glm::dvec3>& positions, const std::vector<uint32_t>& vertices)
+    NearVertices(const std::vector<glm::dvec3>& positions, const std::vector<uint32_t>& vertices)
     {
         nodes_.reserve(vertices.size());
         for (uint32_t vertex : vertices) nodes_.push_back({positions[vertex], vertex, 0});
         build(0, nodes_.size());
-    }
-
-    template <class Visit>
-    void visit(const glm::dvec3& minimum, const glm::dvec3& maximum, Visit&& visit_one) const
-    {
-        visit(0, nodes_.size(), minimum, maximum, visit_one);
     }
 
     // At least all that come within `reach` of the segment, and of others not many.
@@ -89,17 +67,6 @@ private:
         build(middle + 1, end);
     }
 
-    template <class Visit>
-    void visit(size_t begin, size_t end, const glm::dvec3& minimum, const glm::dvec3& maximum, Visit& visit_one) const
-    {
-        if (begin >= end) return;
-        const size_t middle = begin + (end - begin) / 2;
-        const auto& [p, vertex, axis] = nodes_[middle];
-        if (minimum[axis] <= p[axis]) visit(begin, middle, minimum, maximum, visit_one);
-        if (glm::all(glm::lessThanEqual(minimum, p)) && glm::all(glm::lessThanEqual(p, maximum))) visit_one(vertex, p);
-        if (maximum[axis] >= p[axis]) visit(middle + 1, end, minimum, maximum, visit_one);
-    }
-
     // As far as the segment goes on a side of a vertex, with `reach` more on either side of the plane between.
     template <class Visit>
     void near(size_t begin, size_t end, const glm::dvec3& from, const glm::dvec3& along, double first, double last,
@@ -131,23 +98,21 @@ class CrackFiller {
 public:
     CrackFiller(Surface& surface, BuildWork& work) : surface_(surface), work_(work) { find(); }
 
-    bool open() const { return !borders_.empty(); }
-
     // Each corner of a border becomes the first one that is near it, unless an edge of the border joins them.
     size_t weld()
     {
         std::vector<std::pair<uint32_t, uint32_t>> joined;
-        for (const BorderEdge& border : borders_) joined.emplace_back(std::minmax(begin(border), end(border)));
+        for (HalfEdge border : borders_) joined.emplace_back(std::minmax(begin(border), end(border)));
         std::sort(joined.begin(), joined.end());
 
         std::vector<uint32_t> becomes(surface_.vertices.size());
         std::iota(becomes.begin(), becomes.end(), 0u);
         size_t welded = 0;
-        const VerticesInBox near(surface_.vertices, corners_);
+        const NearVertices corners(surface_.vertices, corners_);
         for (uint32_t corner : corners_) {
             if (work_.over()) return 0;
             uint32_t first = corner;
-            near.visit(at(corner) - crack, at(corner) + crack, [&](uint32_t other, const glm::dvec3& there) {
+            corners.visit_near(at(corner), at(corner), crack, [&](uint32_t other, const glm::dvec3& there) {
                 work_.spend();
                 if (other < first && becomes[other] == other && glm::distance(at(corner), there) <= crack &&
                     !std::binary_search(joined.begin(), joined.end(), std::pair(other, corner)))
@@ -168,15 +133,15 @@ public:
     size_t cut()
     {
         size_t cuts = 0;
-        const VerticesInBox corners(surface_.vertices, corners_);
+        const NearVertices corners(surface_.vertices, corners_);
         std::vector<bool> touched(surface_.faces.size());
-        for (const BorderEdge& border : borders_) {
+        for (HalfEdge border : borders_) {
             if (work_.over()) return 0;
-            if (touched[border.face]) continue; // its other edges: next time
+            if (touched[border.face()]) continue; // its other edges: next time
             uint32_t corner = 0;
             double share = 1;
             if (!first_corner_on(border, corners, corner, share)) continue;
-            touched[border.face] = true;
+            touched[border.face()] = true;
             cut(border, corner, share);
             ++cuts;
         }
@@ -189,15 +154,20 @@ public:
 
 private:
     const glm::dvec3& at(uint32_t vertex) const { return surface_.vertices[vertex]; }
-    uint32_t begin(const BorderEdge& border) const { return surface_.faces[border.face].vertex[border.edge]; }
-    uint32_t end(const BorderEdge& border) const { return surface_.faces[border.face].vertex[next(border.edge)]; }
+    uint32_t begin(HalfEdge border) const { return surface_.faces[border.face()].vertex[border.edge()]; }
+    uint32_t end(HalfEdge border) const { return surface_.faces[border.face()].vertex[next(border.edge())]; }
 
     void find()
     {
         work_.spend(3 * surface_.faces.size());
-        borders_ = border_edges(surface_, work_.threads());
+        borders_.clear();
+        const Edges edges(surface_, work_.threads());
+        for (std::size_t low = 0; low < edges.vertices(); ++low)
+            edges.visit(low, [&](std::span<const uint32_t> codes) {
+                if (codes.size() == 1) borders_.push_back({codes[0]});
+            });
         corners_.clear();
-        for (const BorderEdge& border : borders_) {
+        for (HalfEdge border : borders_) {
             corners_.push_back(begin(border));
             corners_.push_back(end(border));
         }
@@ -205,12 +175,11 @@ private:
         corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
     }
 
-    bool first_corner_on(const BorderEdge& border, const VerticesInBox& corners, uint32_t& corner, double& share) const
+    bool first_corner_on(HalfEdge border, const NearVertices& corners, uint32_t& corner, double& share) const
     {
         const glm::dvec3 &a = at(begin(border)), &b = at(end(border)), along = b - a;
-        const uint32_t tip = surface_.faces[border.face].vertex[previous(border.edge)];
+        const uint32_t tip = surface_.faces[border.face()].vertex[previous(border.edge())];
         const double length = glm::length(along);
-        share = 1;
         corners.visit_near(a, b, crack, [&](uint32_t candidate, const glm::dvec3& there) {
             work_.spend(looks_per_corner);
             const glm::dvec3 beside = there - a;
@@ -224,26 +193,26 @@ private:
         return share < 1;
     }
 
-    void cut(const BorderEdge& border, uint32_t corner, double share)
+    void cut(HalfEdge border, uint32_t corner, double share)
     {
-        const uint32_t first = border.edge, second = next(border.edge);
-        Face rest = surface_.faces[border.face];
+        const uint32_t first = border.edge(), second = next(border.edge());
+        Face rest = surface_.faces[border.face()];
         rest.vertex[first] = corner;
-        surface_.faces[border.face].vertex[second] = corner;
+        surface_.faces[border.face()].vertex[second] = corner;
         surface_.faces.push_back(rest);
-        if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups.push_back(uint32_t{groups[border.face]});
-        if (auto& origins = surface_.origins; !origins.empty()) origins.push_back(Origin{origins[border.face]});
+        if (auto& groups = surface_.smoothing_groups; !groups.empty())
+            groups.push_back(uint32_t{groups[border.face()]});
         if (surface_.corner_uv.empty()) return;
-        std::array<glm::dvec2, 3> rest_uv = surface_.corner_uv[border.face];
+        std::array<glm::dvec2, 3> rest_uv = surface_.corner_uv[border.face()];
         const glm::dvec2 uv = glm::mix(rest_uv[first], rest_uv[second], share);
         rest_uv[first] = uv;
-        surface_.corner_uv[border.face][second] = uv;
+        surface_.corner_uv[border.face()][second] = uv;
         surface_.corner_uv.push_back(rest_uv);
     }
 
     Surface& surface_;
     BuildWork& work_;
-    std::vector<BorderEdge> borders_;
+    std::vector<HalfEdge> borders_;
     std::vector<uint32_t> corners_; // of the borders, ascending
 };
 
@@ -253,7 +222,6 @@ void close_cracks(Surface& surface, MeshReport& report, BuildWork& work)
 {
     if (!work.begin("which of its borders lie on each other") || report.border_edges == 0) return;
     CrackFiller filler(surface, work);
-    if (!filler.open()) return;
     report.cracks_closed = filler.weld();
     // A round cuts each face once. More corners on one face than rounds: the rest stays open.
     for (int round = 0; round < 64 && !work.over(); ++round) {
