@@ -30,12 +30,9 @@ std::string binding_fault(const TextureBinding& binding)
     return {};
 }
 
-TextureSlot::TextureSlot() : TextureSlot(TextureBinding{}) {}
-
 TextureSlot::TextureSlot(TextureBinding binding)
 {
-    const std::lock_guard lock(publishers_);
-    publish_locked(binding_fault(binding).empty() ? std::move(binding) : TextureBinding{});
+    if (!publish(std::move(binding)).empty()) publish({});
 }
 
 std::string TextureSlot::publish(TextureBinding binding)
@@ -43,38 +40,16 @@ std::string TextureSlot::publish(TextureBinding binding)
     std::string fault = binding_fault(binding);
     if (!fault.empty()) return fault;
     const std::lock_guard lock(publishers_);
-    publish_locked(std::move(binding));
-    return {};
-}
-
-void TextureSlot::publish_locked(TextureBinding binding)
-{
     const uint64_t serial = newest_serial() + 1;
     kept_.push_back(std::make_unique<const PublishedBinding>(PublishedBinding{serial, std::move(binding)}));
     newest_.store(kept_.back().get(), std::memory_order_release);
     newest_serial_.store(serial, std::memory_order_release);
-    collect_locked();
-}
-
-void TextureSlot::collect()
-{
-    const std::lock_guard lock(publishers_);
-    collect_locked();
-}
-
-// A servo that is about to pick up the newest binding has stored a serial no larger than that binding's, and serials
-// only grow: whatever it may still load is not older than what it has stored.
-void TextureSlot::collect_locked()
-{
-    uint64_t oldest = kept_.back()->serial;
+    // A servo that is about to pick up the newest binding has stored a serial no larger than that binding's, and
+    // serials only grow: whatever it may still load is not older than what it has stored.
+    uint64_t oldest = serial;
     for (const auto& in_use : oldest_in_use_) oldest = std::min(oldest, in_use.load(std::memory_order_acquire));
     while (kept_.front()->serial < oldest) kept_.pop_front();
-}
-
-std::size_t TextureSlot::kept() const
-{
-    const std::lock_guard lock(publishers_);
-    return kept_.size();
+    return {};
 }
 
 TextureReader::TextureReader(TextureSlot& slot) : slot_(&slot)

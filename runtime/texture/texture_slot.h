@@ -3,7 +3,7 @@
 // Reload, slider and material edit all publish an immutable binding to the object's slot: one atomic pointer. A servo
 // fades from the binding it feels to the newest one over fade_s; what arrives during a fade waits, and only the newest
 // of it is kept. A servo never frees: the publisher does, once every servo has moved on. The cost: bindings published
-// during a fade stay in memory until it ends and somebody publishes or collects.
+// during a fade stay in memory until it ends and somebody publishes.
 #pragma once
 
 #include "lang/abi/texture_binding.h"
@@ -32,9 +32,8 @@ struct PublishedBinding {
 
 class TextureSlot {
 public:
-    TextureSlot(); // flat
-    // `binding` must pass binding_fault, or the slot starts flat.
-    explicit TextureSlot(TextureBinding binding);
+    // Flat, too, if `binding` does not pass binding_fault.
+    explicit TextureSlot(TextureBinding binding = {});
 
     TextureSlot(const TextureSlot&) = delete;
     TextureSlot& operator=(const TextureSlot&) = delete;
@@ -42,23 +41,14 @@ public:
     // Any thread but a servo. Returns the binding's fault, with the texture in the hand left as it is, or nothing.
     std::string publish(TextureBinding binding);
 
-    // Frees what no servo uses any more; publish does so too. Any thread but a servo.
-    void collect();
-
     // Serial of the newest binding; 1 from the start.
     uint64_t newest_serial() const noexcept { return newest_serial_.load(std::memory_order_acquire); }
-
-    // Bindings not freed yet, the newest included.
-    std::size_t kept() const;
 
 private:
     friend class TextureReader;
     static constexpr uint64_t unused = ~uint64_t{0};
 
-    void publish_locked(TextureBinding binding);
-    void collect_locked();
-
-    mutable std::mutex publishers_;
+    std::mutex publishers_;
     std::deque<std::unique_ptr<const PublishedBinding>> kept_; // oldest first; guarded by publishers_
     std::atomic<const PublishedBinding*> newest_{nullptr};
     // Beside it: only a reader may look into a binding, which another publisher may free at any time.
