@@ -27,7 +27,10 @@ constexpr std::size_t most_told = 20;
 // What is wrong with a whole scene, part by part.
 class Findings {
 public:
-    std::string text() const { return told_ + (count_ > most_told ? more() : std::string()); }
+    std::string text() const
+    {
+        return count_ > most_told ? told_ + "\nand " + std::to_string(count_ - most_told) + " more" : told_;
+    }
 
     // Of the parts that follow, "object 3 (`ball`): "; empty: of the scene.
     void part(std::string name) { part_ = std::move(name); }
@@ -45,8 +48,6 @@ public:
     RangeCheck ranges() { return RangeCheck(broken()); }
 
 private:
-    std::string more() const { return "\nand " + std::to_string(count_ - most_told) + " more"; }
-
     std::string part_, told_;
     std::size_t count_ = 0;
 };
@@ -120,11 +121,7 @@ void validate(const Region& region, double rate_hz, Findings& findings)
     validate(region.placement, findings);
     const std::size_t before = findings.count();
     if (region.shape != RegionShape::space)
-        for (int i = 0; i < 3; ++i)
-            if (!region_size_m.holds(region.half_sides_m[i])) {
-                findings.add(out_of_range("half_sides_m", region_size_m, shortest(region.half_sides_m[i])));
-                break;
-            }
+        findings.ranges()("half_sides_m", region.half_sides_m, Quantity::length, region_size_m);
     region_fields(region, findings.ranges());
     if (region.shape != RegionShape::space) region_edge_field(region, findings.ranges());
     if (findings.count() == before) check_edge(region, findings.broken());
@@ -175,12 +172,7 @@ std::string out_of_range(std::string_view key, const Range& range, std::string_v
     return "`" + std::string(key) + "` must be " + in_words(range) + ", found " + std::string(found);
 }
 
-void RangeCheck::operator()(std::string_view key, double value, Quantity, const Range& range) const
-{
-    if (!range.holds(value)) broken_(key, out_of_range(key, range, shortest(value)));
-}
-
-void RangeCheck::operator()(std::string_view key, const glm::dvec3& values, Quantity, const Range& range) const
+void RangeCheck::check(std::string_view key, const glm::dvec3& values, const Range& range) const
 {
     for (int i = 0; i < 3; ++i)
         if (!range.holds(values[i])) return broken_(key, out_of_range(key, range, shortest(values[i])));
@@ -261,9 +253,7 @@ std::string validate(const Scene* scene, const HandSettings& hand)
     if (findings.count() > 0) return findings.text(); // the rate is what other figures are compared with
 
     findings.part("hand");
-    constexpr Range force_max_n{0, std::numeric_limits<double>::infinity()};
-    if (!force_max_n.holds(hand.force_max_n))
-        findings.add(out_of_range("force_max_n", force_max_n, shortest(hand.force_max_n)));
+    findings.ranges()("force_max_n", hand.force_max_n, Quantity::force, {0, std::numeric_limits<double>::infinity()});
     workspace_fields(hand.workspace, findings.ranges());
     validate(hand.workspace.placement, findings);
 

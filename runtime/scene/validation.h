@@ -19,10 +19,14 @@ using Broken = std::function<void(std::string_view key, const std::string& why)>
 class RangeCheck {
 public:
     explicit RangeCheck(Broken broken) : broken_(std::move(broken)) {}
-    void operator()(std::string_view key, double value, Quantity, const Range& range) const;
-    void operator()(std::string_view key, const glm::dvec3& values, Quantity, const Range& range) const;
+    void operator()(std::string_view key, const auto& value, Quantity, const Range& range) const
+    {
+        check(key, glm::dvec3(value), range); // of one number three times the same
+    }
 
 private:
+    void check(std::string_view key, const glm::dvec3& values, const Range& range) const;
+
     Broken broken_;
 };
 
