@@ -47,8 +47,7 @@ std::string out_of_range(std::string_view key, const Range& range, std::string_v
 // As people write it: 0.1, 500, 1e+20.
 std::string shortest(double value);
 
-template <class Servo, class Visit>
-void servo_fields(Servo& servo, Visit&& visit)
+void servo_fields(auto& servo, auto&& visit)
 {
     visit("rate_hz", servo.rate_hz, Quantity::frequency, Range{10, 100'000});
     visit("lateral_depth_m", servo.force.lateral_depth_m, Quantity::length, Range{0, 1, true});
@@ -58,35 +57,30 @@ void servo_fields(Servo& servo, Visit&& visit)
     visit("wait_for_small_force_n", servo.wait_for_small_force_n, Quantity::force, Range{0, 100});
 }
 
-template <class Probe, class Visit>
-void probe_fields(Probe& probe, Visit&& visit)
+void probe_fields(auto& probe, auto&& visit)
 {
     visit("radius_m", probe.radius_m, Quantity::length, Range{0, 10});
     if (probe.grip_m) visit("grip_m", *probe.grip_m, Quantity::length, Range{0, 10});
 }
 
 // Of a probe with a tail.
-template <class Probe, class Visit>
-void probe_length_field(Probe& probe, Visit&& visit)
+void probe_length_field(auto& probe, auto&& visit)
 {
     visit("length_m", probe.length_m, Quantity::length, Range{0, 10, true});
 }
 
-template <class Workspace, class Visit>
-void workspace_fields(Workspace& workspace, Visit&& visit)
+void workspace_fields(auto& workspace, auto&& visit)
 {
     visit("scale", workspace.scale, Quantity::number, Range{1e-3, 1e3});
 }
 
 // Rotations are read from angles, and checked for being any (placement.h).
-template <class Placement, class Visit>
-void placement_fields(Placement& placement, Visit&& visit)
+void placement_fields(auto& placement, auto&& visit)
 {
     visit("position_m", placement.position_m, Quantity::length, Range{-1000, 1000});
 }
 
-template <class Material, class Visit>
-void material_fields(Material& material, Visit&& visit)
+void material_fields(auto& material, auto&& visit)
 {
     visit("stiffness_n_per_m", material.stiffness_n_per_m, Quantity::stiffness, Range{0, 1e6, true});
     visit("damping_n_s_per_m", material.damping_n_s_per_m, Quantity::damping, Range{0, 1e4});
@@ -94,51 +88,44 @@ void material_fields(Material& material, Visit&& visit)
     visit("dynamic_friction", material.dynamic_friction, Quantity::number, Range{0, 10});
 }
 
-template <class Figures, class Visit>
-void swing_fields(Figures& figures, Visit&& visit)
+void swing_fields(auto& figures, auto&& visit)
 {
     visit("swing_m", figures.swing_m, Quantity::length, Range{-1000, 1000});
     visit("swing_hz", figures.swing_hz, Quantity::frequency, Range{0, 1000, true});
 }
 
-template <class Magnet, class Visit>
-void magnet_fields(Magnet& magnet, Visit&& visit)
+void magnet_fields(auto& magnet, auto&& visit)
 {
     visit("force_n", magnet.force_n, Quantity::force, Range{0, 100});
     visit("reach_m", magnet.reach_m, Quantity::length, Range{0, 1000, true});
 }
 
-template <class Effects, class Visit>
-void viscosity_fields(Effects& effects, Visit&& visit)
+void viscosity_fields(auto& effects, auto&& visit)
 {
     visit("damping_n_s_per_m", effects.damping_n_s_per_m, Quantity::damping, Range{0, 1000});
     visit("reach_m", effects.damping_reach_m, Quantity::length, Range{0, 1000, true});
 }
 
 // The direction is made a unit vector of what a file says.
-template <class Vibration, class Visit>
-void vibration_fields(Vibration& vibration, Visit&& visit)
+void vibration_fields(auto& vibration, auto&& visit)
 {
     visit("force_n", vibration.force_n, Quantity::force, Range{0, 100});
     visit("frequency_hz", vibration.frequency_hz, Quantity::frequency, Range{0, 100'000, true});
     visit("direction", vibration.direction, Quantity::number, Range{-1e6, 1e6});
 }
 
-template <class Number, class Visit>
-void vibration_reach_field(Number& reach_m, Visit&& visit)
+void vibration_reach_field(auto& reach_m, auto&& visit)
 {
     visit("reach_m", reach_m, Quantity::length, Range{0, 1000});
 }
 
-template <class Region, class Visit>
-void region_fields(Region& region, Visit&& visit)
+void region_fields(auto& region, auto&& visit)
 {
     visit("damping_n_s_per_m", region.damping_n_s_per_m, Quantity::damping, Range{0, 1000});
 }
 
 // Of a region with a border.
-template <class Region, class Visit>
-void region_edge_field(Region& region, Visit&& visit)
+void region_edge_field(auto& region, auto&& visit)
 {
     visit("edge_m", region.edge_m, Quantity::length, Range{0, 1000, true});
 }
