@@ -73,7 +73,6 @@ void check(const runtime::SceneText& text, FileMessages& messages)
     const runtime::Broken broken = [&](std::string_view, const std::string& why) { messages.error(why); };
     servo_fields(text.servo, runtime::RangeCheck(broken));
     probe_fields(text.probe, runtime::RangeCheck(broken));
-    if (text.probe.has_tail()) probe_length_field(text.probe, runtime::RangeCheck(broken));
     check_probe(text.probe, broken);
     for (const runtime::ObjectText& object : text.objects) {
         const runtime::Broken broken_here = [&](std::string_view, const std::string& why) {

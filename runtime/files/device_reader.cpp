@@ -69,7 +69,6 @@ ProbeSettings read_probe(const toml::table& source, const std::string& name, Fil
     if (const auto kind = table.word("kind", {"point", "sphere", "stylus", "gripper"}))
         probe.kind = static_cast<ProbeKind>(*kind);
     if (table.has("grip_m")) probe.grip_m = 0.0; // to be read
-    probe_length_field(probe, table.fields());
     probe_fields(probe, table.fields());
     if (table.has("length_m") && !probe.has_tail())
         messages.error(table.where("length_m"), "`length_m` is for `kind = \"stylus\"` or `\"gripper\"`: write one of "

@@ -93,13 +93,11 @@ Region read_region(const toml::table& source, double rate_hz, FileMessages& mess
     region.half_sides_m = ball ? glm::dvec3(radius_m) : 0.5 * sides_m;
     const double smallest_m = std::min({region.half_sides_m.x, region.half_sides_m.y, region.half_sides_m.z});
     region.edge_m = default_edge * smallest_m;
-    region_edge_field(region, table.fields());
+    region_fields(region, table.fields());
     if (table.has("edge_m") && shape && !ball && !box)
         messages.error(table.where("edge_m"), "`edge_m` is for a `shape` with a border, \"ball\" or \"box\"");
     else
         check_edge(region, table.broken());
-
-    region_fields(region, table.fields());
     if (const toml::table* vibration = table.table("vibration", vibration_example))
         region.vibration = read_vibration(*vibration, rate_hz, nullptr, messages);
     table.report_unknown_keys();

@@ -61,12 +61,7 @@ void probe_fields(auto& probe, auto&& visit)
 {
     visit("radius_m", probe.radius_m, Quantity::length, Range{0, 10});
     if (probe.grip_m) visit("grip_m", *probe.grip_m, Quantity::length, Range{0, 10});
-}
-
-// Of a probe with a tail.
-void probe_length_field(auto& probe, auto&& visit)
-{
-    visit("length_m", probe.length_m, Quantity::length, Range{0, 10, true});
+    if (probe.has_tail()) visit("length_m", probe.length_m, Quantity::length, Range{0, 10, true});
 }
 
 void workspace_fields(auto& workspace, auto&& visit)
@@ -122,12 +117,7 @@ void vibration_reach_field(auto& reach_m, auto&& visit)
 void region_fields(auto& region, auto&& visit)
 {
     visit("damping_n_s_per_m", region.damping_n_s_per_m, Quantity::damping, Range{0, 1000});
-}
-
-// Of a region with a border.
-void region_edge_field(auto& region, auto&& visit)
-{
-    visit("edge_m", region.edge_m, Quantity::length, Range{0, 1000, true});
+    if (region.shape != RegionShape::space) visit("edge_m", region.edge_m, Quantity::length, Range{0, 1000, true});
 }
 
 // The radius of a ball, or a side of a box.

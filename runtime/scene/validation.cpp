@@ -82,7 +82,6 @@ void validate(const ProbeSettings& probe, Findings& findings)
     if (!one_of(probe.kind, ProbeKind::gripper)) return findings.add("unknown `kind`");
     const std::size_t before = findings.count();
     probe_fields(probe, findings.ranges());
-    if (probe.has_tail()) probe_length_field(probe, findings.ranges());
     if (findings.count() == before) check_probe(probe, findings.broken());
 }
 
@@ -123,7 +122,6 @@ void validate(const Region& region, double rate_hz, Findings& findings)
     if (region.shape != RegionShape::space)
         findings.ranges()("half_sides_m", region.half_sides_m, Quantity::length, region_size_m);
     region_fields(region, findings.ranges());
-    if (region.shape != RegionShape::space) region_edge_field(region, findings.ranges());
     if (findings.count() == before) check_edge(region, findings.broken());
     validate(region.vibration, rate_hz, findings);
 }
