@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 namespace haptel::runtime {
@@ -14,22 +13,11 @@ enum class ForceModel : uint8_t { displaced, paper, paper_unit, ho99, lateral };
 inline constexpr std::array<std::string_view, 5> force_model_names = {"displaced", "paper", "paper_unit", "ho99",
                                                                       "lateral"};
 
-inline std::string_view name_of(ForceModel model)
-{
-    return force_model_names[static_cast<std::size_t>(model)];
-}
-std::optional<ForceModel> force_model_named(std::string_view name);
-
 // How facets become round (runtime/force/foot.h): `smooth` has a potential, `paper` is equation (1) as published.
 enum class ForceShading : uint8_t { smooth, paper };
 
 // In the order of ForceShading.
 inline constexpr std::array<std::string_view, 2> force_shading_names = {"smooth", "paper"};
-
-inline std::string_view name_of(ForceShading shading)
-{
-    return force_shading_names[static_cast<std::size_t>(shading)];
-}
 
 // What a scene says about it.
 struct ForceRule {
