@@ -18,11 +18,6 @@ struct Magnet {
         const double x = distance_m / reach_m;
         return x > 0 && x < 1 ? 4 * force_n * x * (1 - x) : 0.0;
     }
-    double energy_j(double distance_m) const noexcept // from the surface up to there
-    {
-        const double x = distance_m < reach_m ? distance_m / reach_m : 1.0;
-        return force_n * reach_m * x * x * (2 - 4.0 / 3.0 * x);
-    }
 };
 
 } // namespace haptel::runtime
