@@ -4,6 +4,8 @@
 #include "runtime/scene/magnet.h"
 #include "runtime/scene/vibration.h"
 
+#include <algorithm>
+
 namespace haptel::runtime {
 
 // Of one object. Viscosity and vibration are full while it is touched and fall off with the distance to it, to nothing
@@ -17,7 +19,11 @@ struct ObjectEffects {
 
     bool act() const { return magnet.acts() || damping_n_s_per_m > 0 || vibration.acts(); }
     // From here on nothing of it is felt.
-    double reach_m() const;
+    double reach_m() const
+    {
+        return std::max({magnet.acts() ? magnet.reach_m : 0.0, damping_n_s_per_m > 0 ? damping_reach_m : 0.0,
+                         vibration.acts() ? vibration_reach_m : 0.0});
+    }
 };
 
 } // namespace haptel::runtime

@@ -4,6 +4,7 @@
 #include "runtime/geometry/placement.h"
 #include "runtime/scene/vibration.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace haptel::runtime {
@@ -19,7 +20,14 @@ struct Region {
     Vibration vibration; // its direction turns with the region
 
     // How much of the medium is there, 0 outside to 1; continuous.
-    double share_at(const glm::dvec3& p_m) const noexcept;
+    double share_at(const glm::dvec3& p_m) const noexcept
+    {
+        if (shape == RegionShape::space) return 1;
+        const glm::dvec3 p = placement.to_object(p_m), inward = half_sides_m - glm::abs(p);
+        const double depth_m =
+            shape == RegionShape::ball ? half_sides_m.x - glm::length(p) : std::min({inward.x, inward.y, inward.z});
+        return std::clamp(depth_m / edge_m, 0.0, 1.0);
+    }
 };
 
 } // namespace haptel::runtime
