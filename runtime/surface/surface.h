@@ -24,18 +24,15 @@ struct Loading;
 
 // What was found in a mesh and mended. All counts, no unit.
 struct MeshReport {
-    size_t triangles_given = 0, triangles_kept = 0;
-    size_t vertices_welded = 0;      // positions that equal another one (after rounding to the lattice)
+    size_t triangles_given = 0;
     size_t indices_out_of_range = 0; // triangles dropped for an index beyond the positions
     size_t not_finite = 0;           // triangles dropped for a NaN or infinite coordinate
     size_t degenerate = 0;           // triangles dropped for having no area
     size_t duplicate = 0;            // triangles dropped for having the corners of another
     size_t cracks_closed = 0;        // corners of borders that now belong to the border beside them, too
     size_t border_edges = 0;         // edges of one face only: the mesh is open there
-    size_t nonmanifold_edges = 0;    // edges of more than two faces
     size_t pierced = 0;              // faces cut or touched by faces that are not their neighbours
 
-    bool repaired() const { return indices_out_of_range + not_finite + degenerate + duplicate > 0; }
     std::string warning() const; // one line for the user; empty when nothing was dropped and nothing is pierced
     std::string note() const;    // what is no fault but good to know: that the mesh is open; or empty
 };
@@ -148,7 +145,6 @@ struct Surface {
     }
     // One piece that does not cut itself: links lead everywhere that a point comes to.
     bool is_clean() const { return origins.empty() && !cuts_itself; }
-    bool is_border(uint32_t face, uint32_t edge) const { return faces[face].link[edge][0].face() == face; }
 
     // From the object's box to that of the segment; 0 where they meet.
     double gap_to_box_m(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;

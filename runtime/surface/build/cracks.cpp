@@ -229,7 +229,6 @@ void close_cracks(Surface& surface, MeshReport& report, BuildWork& work)
         report.cracks_closed += cuts;
         if (cuts == 0) break;
     }
-    report.triangles_kept = surface.faces.size();
 }
 
 } // namespace haptel::runtime

@@ -71,7 +71,7 @@ void link_faces(Surface& surface, const Edges& edges, MeshReport& report, unsign
             face.normal = exact_normal(v[face.vertex[0]], v[face.vertex[1]], v[face.vertex[2]]).unit();
         }
     });
-    std::atomic<std::size_t> border_edges = 0, nonmanifold_edges = 0;
+    std::atomic<std::size_t> border_edges = 0;
     in_pieces(edges.vertices(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Wing> wings;
         for (std::size_t low = begin; low < end; ++low)
@@ -80,7 +80,6 @@ void link_faces(Surface& surface, const Edges& edges, MeshReport& report, unsign
                 for (const uint32_t code : codes) wings.push_back(wing_of(surface, HalfEdge{code}));
                 const std::size_t count = wings.size();
                 border_edges += count == 1;
-                nonmanifold_edges += count > 2;
                 if (count > 2) {
                     const Wing reference = wings[0];
                     std::sort(wings.begin(), wings.end(), RadialOrder{surface.vertices, reference});
@@ -89,7 +88,6 @@ void link_faces(Surface& surface, const Edges& edges, MeshReport& report, unsign
             });
     });
     report.border_edges = border_edges;
-    report.nonmanifold_edges = nonmanifold_edges;
 }
 
 } // namespace haptel::runtime

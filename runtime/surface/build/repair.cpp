@@ -4,7 +4,6 @@
 #include "runtime/surface/in_parallel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <span>
@@ -57,8 +56,7 @@ uint64_t mixed(const glm::dvec3& p)
 
 // Rounds the used positions to the lattice and welds equal ones: vertices in order of first use by position order,
 // so that the result depends on the mesh alone. Returns the vertex of each position.
-std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surface& surface, MeshReport& report,
-                           unsigned threads)
+std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surface& surface, unsigned threads)
 {
     const std::size_t count = mesh.positions_m.size();
     std::vector<glm::dvec3> snapped(count);
@@ -73,7 +71,6 @@ std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surf
     });
     ByNumber by_place(count, count, [&](std::size_t i) { return place[i]; });
     std::vector<uint32_t>& first = place; // from now on the first position with these coordinates
-    std::atomic<std::size_t> welded = 0;
     in_pieces(count, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
         const auto key = [&](uint32_t i) { return std::array{snapped[i].x, snapped[i].y, snapped[i].z}; };
         for (std::size_t number = begin; number < end; ++number) {
@@ -83,11 +80,9 @@ std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surf
             for (std::size_t k = 0; k < order.size(); ++k) {
                 const bool same = k > 0 && snapped[order[k]] == snapped[order[k - 1]];
                 first[order[k]] = same ? first[order[k - 1]] : order[k];
-                welded += same;
             }
         }
     });
-    report.vertices_welded += welded;
     std::size_t vertices = 0;
     for (uint32_t i = 0; i < count; ++i) vertices += first[i] == i;
     surface.vertices.reserve(vertices);
@@ -174,7 +169,7 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report, unsigned thr
             maximum = glm::max(maximum, mesh.positions_m[i]);
         }
     surface.lattice = Lattice::around(minimum, maximum);
-    const std::vector<uint32_t> vertex = weld(mesh, used, surface, report, threads);
+    const std::vector<uint32_t> vertex = weld(mesh, used, surface, threads);
 
     const bool has_uv = mesh.uv.size() == mesh.positions_m.size();
     const bool has_groups = mesh.smoothing_groups.size() == mesh.triangles.size();
@@ -198,7 +193,6 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report, unsigned thr
     }
     report.degenerate = drop_flat_faces(surface, threads);
     report.duplicate = drop_repeated_faces(surface, threads);
-    report.triangles_kept = surface.faces.size();
     if (surface.faces.empty()) return false;
 
     // The box of what is left; vertices of dropped triangles stay, unused and harmless, but do not widen it.
