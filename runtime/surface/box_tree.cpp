@@ -24,7 +24,7 @@ glm::vec3 rounded(const glm::dvec3& p)
 // visits faces.
 class SegmentQuery {
 public:
-    SegmentQuery(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor)
+    SegmentQuery(const glm::dvec3& from, const glm::dvec3& to, FaceVisitor& visitor)
         : from_(rounded(from)), visitor_(visitor)
     {
         const glm::vec3 along = rounded(to - from);
@@ -57,7 +57,7 @@ private:
 
     glm::vec3 from_, per_along_;
     bool backward_[3];
-    SegmentVisitor& visitor_;
+    FaceVisitor& visitor_;
 };
 
 // `at` is the square of the distance.
@@ -94,7 +94,7 @@ private:
 class VisitedBall : public BallQuery {
 public:
     VisitedBall(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, const glm::dvec3& centre,
-                double radius, BallVisitor& visitor)
+                double radius, FaceVisitor& visitor)
         : BallQuery(centre, radius)
         , vertices_(vertices)
         , faces_(faces)
@@ -121,7 +121,7 @@ private:
     const std::vector<Face>& faces_;
     const glm::dvec3& centre_;
     double radius_;
-    BallVisitor& visitor_;
+    FaceVisitor& visitor_;
 };
 
 class ListedBall : public BallQuery {
@@ -188,13 +188,13 @@ void BoxTree::ask(Query& query) const noexcept
     }
 }
 
-void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept
+void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, FaceVisitor& visitor) const noexcept
 {
     SegmentQuery query(from, to, visitor);
     ask(query);
 }
 
-void BoxTree::ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept
+void BoxTree::ball(const glm::dvec3& centre, double radius, FaceVisitor& visitor) const noexcept
 {
     VisitedBall query(vertices_, faces_, centre, radius, visitor);
     ask(query);

@@ -17,24 +17,15 @@
 
 namespace haptel::runtime {
 
-// Told of each candidate. Returns how much of the segment is still of interest, as a fraction of it: 1 to see all the
-// others, the fraction of the best hit so far to see only what may come before it.
-class SegmentVisitor {
+// Told of each candidate. Returns how much is still of interest. Of a segment a fraction: 1 to see all the others, the
+// fraction of the best hit so far to see only what may come before it. Of a ball how far from its centre: the distance
+// of the nearest thing so far to see only what may be nearer, 0: enough is known.
+class FaceVisitor {
 public:
     virtual double visit(uint32_t face) noexcept = 0;
 
 protected:
-    ~SegmentVisitor() = default;
-};
-
-// Told of each candidate within a ball. Returns how far from its centre is still of interest: the distance of the
-// nearest thing so far to see only what may be nearer, 0: enough is known.
-class BallVisitor {
-public:
-    virtual double visit(uint32_t face) noexcept = 0;
-
-protected:
-    ~BallVisitor() = default;
+    ~FaceVisitor() = default;
 };
 
 class BoxTree {
@@ -71,10 +62,10 @@ public:
     // A bit for each child of a node whose box comes within `radius` of the centre.
     uint32_t children_near(uint32_t node, const glm::dvec3& centre, double radius) const noexcept;
 
-    void segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept;
+    void segment(const glm::dvec3& from, const glm::dvec3& to, FaceVisitor& visitor) const noexcept;
 
     // Every face whose box comes within `radius` of the centre, roughly the near ones first.
-    void ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept;
+    void ball(const glm::dvec3& centre, double radius, FaceVisitor& visitor) const noexcept;
     // The same faces, and some a little farther away, as a list that has room for so many; false if there are more.
     bool ball(const glm::dvec3& centre, double radius, std::size_t most, std::vector<uint32_t>& faces) const noexcept;
 

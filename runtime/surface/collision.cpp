@@ -18,7 +18,7 @@ bool StartsOn::skips(uint32_t face, const Face& data) const
 
 namespace {
 
-class FirstCrossing final : public SegmentVisitor {
+class FirstCrossing final : public FaceVisitor {
 public:
     FirstCrossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,
                   Crossing& first, CollisionCount& count)
@@ -57,7 +57,7 @@ private:
 //
 // A triangle is at least as far away as its plane and, in the plane, as each of its edges' lines beyond which the
 // centre lies. Unlike the nearest point of a sliver this does not depend on which of its features is the nearest.
-class LeastDistance final : public BallVisitor {
+class LeastDistance final : public FaceVisitor {
 public:
     LeastDistance(const Surface& surface, const glm::dvec3& centre, double radius)
         : least(radius), surface_(surface), centre_(centre)

@@ -14,7 +14,7 @@ constexpr double foresight = 2;
 constexpr double up = 1 + 1e-9;
 
 // Lattice units.
-class Nearest final : public BallVisitor {
+class Nearest final : public FaceVisitor {
 public:
     Nearest(const Surface& surface, const glm::dvec3& from, double radius)
         : distance(radius), surface_(surface), from_(from)

@@ -16,7 +16,7 @@ constexpr std::size_t looks_per_test = 8;
 
 // Two faces that are not neighbours cut or touch each other exactly if an edge of one meets the other. Ties count
 // as touching. A face in the plane of the edge cannot stop a path along it.
-class EdgeAgainstFaces final : public SegmentVisitor {
+class EdgeAgainstFaces final : public FaceVisitor {
 public:
     EdgeAgainstFaces(const Surface& surface, BuildWork& work, std::vector<std::atomic<bool>>& is_pierced)
         : surface_(surface), work_(work), is_pierced_(is_pierced)
