@@ -13,7 +13,7 @@ public:
               uint32_t face, uint32_t side) noexcept
         : normal_(surface.facet_normal(face, side))
         , ellipse_(friction.grain, normal_)
-        , depth_(std::max(0.0, -glm::dot(hand - surface.vertices[surface.faces[face].vertex[0]], normal_)))
+        , depth_(std::max(0.0, -glm::dot(hand - surface.vertex(face, 0), normal_)))
         , slides_by_(friction.dynamic_coefficient * depth_)
         , way_(hand - proxy - glm::dot(hand - proxy, normal_) * normal_)
     {

@@ -34,10 +34,8 @@ void SphereContact::keep_told() noexcept
 const NearestPoint& SphereContact::nearest_on(uint32_t face, const glm::dvec3& centre) noexcept
 {
     if (face == nearest_.face && centre == nearest_.centre) return nearest_.at;
-    const auto& vertex = surface_->faces[face].vertex;
-    nearest_ = {face, centre,
-                nearest_point(surface_->vertices[vertex[0]], surface_->vertices[vertex[1]],
-                              surface_->vertices[vertex[2]], centre)};
+    const auto [a, b, c] = surface_->corners(face);
+    nearest_ = {face, centre, nearest_point(a, b, c, centre)};
     return nearest_.at;
 }
 

@@ -30,7 +30,7 @@ constexpr uint64_t per_sweep = 256;
 
 const glm::dvec3& StylusContact::edge_end(uint32_t face, uint32_t edge, uint32_t which) const noexcept
 {
-    return surface().vertices[surface().faces[face].vertex[which ? next(edge) : edge]];
+    return surface().vertex(face, which ? next(edge) : edge);
 }
 
 Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const noexcept
@@ -194,13 +194,10 @@ bool StylusContact::is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Sh
 // Takes the triangle if the shaft crosses it, and none that it takes before.
 void StylusContact::cross(uint32_t face, const Shaft& at, std::optional<Crossing>& first) const noexcept
 {
-    const Surface& s = surface();
-    const auto& [a, b, c] = s.faces[face].vertex;
+    const auto [a, b, c] = surface().corners(face);
     Crossing crossing;
     crossing.face = face;
-    if (crosses(at.tip, at.tail, s.vertices[a], s.vertices[b], s.vertices[c], crossing) &&
-        (!first || earlier(crossing, *first)))
-        first = crossing;
+    if (crosses(at.tip, at.tail, a, b, c, crossing) && (!first || earlier(crossing, *first))) first = crossing;
 }
 
 SweptRegion StylusContact::swept_to(const Shaft& to) const noexcept

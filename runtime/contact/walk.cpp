@@ -37,10 +37,7 @@ public:
 private:
     enum class Step : uint8_t { again, stop };
 
-    const glm::dvec3& vertex(uint32_t face, uint32_t corner) const
-    {
-        return surface_.vertices[surface_.faces[face].vertex[corner]];
-    }
+    const glm::dvec3& vertex(uint32_t face, uint32_t corner) const { return surface_.vertex(face, corner); }
     glm::dvec3 edge_vector(uint32_t face, uint32_t edge) const { return vertex(face, next(edge)) - vertex(face, edge); }
     // Within the face, at a right angle to its edge, as long as the edge.
     glm::dvec3 inward(uint32_t face, uint32_t edge) const

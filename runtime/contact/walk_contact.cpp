@@ -130,9 +130,8 @@ void WalkContact::describe() noexcept
     const glm::dvec3 from_hand = proxy_.at - hand_;
     glm::dvec3 across = from_hand; // the part that no sliding along the feature changes
     if (proxy_.on == Proxy::On::edge) {
-        const auto& corners = surface_->faces[proxy_.face].vertex;
-        const glm::dvec3 along = glm::normalize(surface_->vertices[corners[(proxy_.index + 1) % 3]] -
-                                                surface_->vertices[corners[proxy_.index]]);
+        const glm::dvec3 along = glm::normalize(surface_->vertex(proxy_.face, (proxy_.index + 1) % 3) -
+                                                surface_->vertex(proxy_.face, proxy_.index));
         across -= glm::dot(across, along) * along;
     }
     double depth = glm::length(across);

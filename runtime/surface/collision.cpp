@@ -34,9 +34,8 @@ public:
         ++count_.triangles_tested;
         Crossing candidate;
         candidate.face = face;
-        const auto& v = surface_.vertices;
-        if (!start_.skips(face, data) &&
-            crosses(from_, to_, v[data.vertex[0]], v[data.vertex[1]], v[data.vertex[2]], candidate) &&
+        const auto [a, b, c] = surface_.corners(face);
+        if (!start_.skips(face, data) && crosses(from_, to_, a, b, c, candidate) &&
             (!found || earlier(candidate, first_))) {
             found = true;
             first_ = candidate;
@@ -108,9 +107,7 @@ bool first_crossing(const Surface& surface, const glm::dvec3& from, const glm::d
 
 glm::dvec3 barycentric_of(const Surface& surface, uint32_t face, const glm::dvec3& point) noexcept
 {
-    const auto& corners = surface.faces[face].vertex;
-    const glm::dvec3 &a = surface.vertices[corners[0]], &b = surface.vertices[corners[1]],
-                     &c = surface.vertices[corners[2]];
+    const auto [a, b, c] = surface.corners(face);
     const glm::dvec3& n = surface.faces[face].normal;
     const double area_a = glm::dot(glm::cross(c - b, point - b), n), area_b = glm::dot(glm::cross(a - c, point - c), n),
                  area_c = glm::dot(glm::cross(b - a, point - a), n);

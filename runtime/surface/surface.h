@@ -116,9 +116,11 @@ struct Surface {
     Surface(const Surface&) = delete;
     Surface& operator=(const Surface&) = delete;
 
-    glm::dvec3 vertex_m(uint32_t face, uint32_t corner) const
+    const glm::dvec3& vertex(uint32_t face, uint32_t corner) const { return vertices[faces[face].vertex[corner]]; }
+    glm::dvec3 vertex_m(uint32_t face, uint32_t corner) const { return lattice.metres(vertex(face, corner)); }
+    std::array<glm::dvec3, 3> corners(uint32_t face) const
     {
-        return lattice.metres(vertices[faces[face].vertex[corner]]);
+        return {vertex(face, 0), vertex(face, 1), vertex(face, 2)};
     }
     glm::dvec3 facet_normal(uint32_t face, uint32_t side = 0) const
     {

@@ -23,10 +23,8 @@ public:
 
     double visit(uint32_t face_seen) noexcept override
     {
-        const auto& corners = surface_.faces[face_seen].vertex;
-        const glm::dvec3 there = nearest_point(surface_.vertices[corners[0]], surface_.vertices[corners[1]],
-                                               surface_.vertices[corners[2]], from_)
-                                     .at;
+        const auto [a, b, c] = surface_.corners(face_seen);
+        const glm::dvec3 there = nearest_point(a, b, c, from_).at;
         const double away = glm::distance(from_, there);
         if (away < distance || (away == distance && face_seen < face)) {
             distance = away;

@@ -47,13 +47,10 @@ SweptRegion::SweptRegion(const glm::dvec3& tip0, const glm::dvec3& tail0, const 
 
 bool SweptRegion::meets(const Surface& surface, uint32_t face) const noexcept
 {
-    const auto& corners = surface.faces[face].vertex;
-    const glm::dvec3 a = BoxTree::scale * surface.vertices[corners[0]],
-                     b = BoxTree::scale * surface.vertices[corners[1]],
-                     c = BoxTree::scale * surface.vertices[corners[2]];
+    const auto [a, b, c] = surface.corners(face);
     for (uint32_t i = 0; i < axis_count_; ++i) {
         const auto& [direction, low, high] = axes_[i];
-        const glm::dvec3 along(direction);
+        const glm::dvec3 along = BoxTree::scale * glm::dvec3(direction);
         const double at_a = glm::dot(along, a), at_b = glm::dot(along, b), at_c = glm::dot(along, c);
         if ((at_a > high && at_b > high && at_c > high) || (at_a < low && at_b < low && at_c < low)) return false;
     }

@@ -40,8 +40,7 @@ Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::d
 
     // The weight of a corner grows by 1 over the altitude from its opposite edge; that of the first, as the others
     // lose.
-    const auto& v = surface.faces[face].vertex;
-    const glm::dvec3 &a = surface.vertices[v[0]], &b = surface.vertices[v[1]], &c = surface.vertices[v[2]];
+    const auto [a, b, c] = surface.corners(face);
     const glm::dvec3 normal = surface.facet_normal(face);
     const glm::dvec3 from_ca = glm::cross(normal, a - c), from_ab = glm::cross(normal, b - a);
     const double per_m = 1 / (glm::dot(from_ab, c - a) * surface.lattice.unit_m);

@@ -87,16 +87,14 @@ bool edges_meet_faces(const Surface& edges, const Placement& of_edges, const Sur
     for (const uint32_t candidate : candidates) {
         glm::dvec3 corner[3];
         for (uint32_t i = 0; i < 3; ++i)
-            corner[i] = faces.lattice.units(of_faces.to_object(
-                of_edges.to_world(edges.lattice.metres(edges.vertices[edges.faces[candidate].vertex[i]]))));
+            corner[i] = faces.lattice.units(of_faces.to_object(of_edges.to_world(edges.vertex_m(candidate, i))));
         for (uint32_t i = 0; i < 3; ++i) {
             if (!work.spend()) return false;
             Segment edge{corner[i], corner[next(i)]};
             if (!clip(edge, box)) continue;
             bool found = false;
             const auto looks_on = [&](uint32_t face) {
-                const auto& v = faces.faces[face].vertex;
-                found = is_near(edge, {faces.vertices[v[0]], faces.vertices[v[1]], faces.vertices[v[2]]}, gap);
+                found = is_near(edge, faces.corners(face), gap);
                 return !found && work.spend();
             };
             (void)faces.tree->for_each(SweptRegion(edge.from, edge.to, edge.from, edge.to, gap), looks_on);

@@ -27,9 +27,8 @@ double turn_max(const Surface& surface, uint32_t face, uint32_t side)
     const double shortest_squared = unit ? 1 - apart / 3 : 0; // the sum of w_i w_j over pairs is at most 1/3
 
     // J in the plane of the face, its columns along the first edge and across it.
-    const auto& corner = surface.faces[face].vertex;
-    const glm::dvec3 along = surface.vertices[corner[1]] - surface.vertices[corner[0]];
-    const glm::dvec3 other = surface.vertices[corner[2]] - surface.vertices[corner[0]];
+    const auto [p, q, r] = surface.corners(face);
+    const glm::dvec3 along = q - p, other = r - p;
     const double length = glm::length(along), place = glm::dot(other, along) / length;
     const double height = glm::length(glm::cross(along, other)) / length;
     const glm::dvec3 by_along = (n[1] - n[0]) / length;
