@@ -21,9 +21,7 @@ bool NearestInFan::consider(const Surface& surface, const Sector& start, const g
             offer(candidate_way, to - candidate_way * along, candidate_edge);
         };
         const Face& face = surface.faces[candidate.face];
-        const glm::dvec3& at = surface.vertices[face.vertex[candidate.corner]];
-        const glm::dvec3 leaving = surface.vertices[face.vertex[next(candidate.corner)]] - at;
-        const glm::dvec3 arriving = surface.vertices[face.vertex[previous(candidate.corner)]] - at;
+        const auto [leaving, arriving] = Spokes(surface, candidate);
         const glm::dvec3 across = glm::dot(to, face.normal) * face.normal, in_plane = to - across;
         if (glm::dot(in_plane, glm::cross(face.normal, leaving)) >= 0 &&
             glm::dot(in_plane, glm::cross(arriving, face.normal)) >= 0)
@@ -61,10 +59,7 @@ bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::
 FanOutward::FanOutward(const Surface& surface, const Sector& start) noexcept
 {
     closed = for_each_sector(surface, start, [&](const Sector& sector) {
-        const Face& face = surface.faces[sector.face];
-        const glm::dvec3& at = surface.vertices[face.vertex[sector.corner]];
-        const glm::dvec3 a = surface.vertices[face.vertex[next(sector.corner)]] - at;
-        const glm::dvec3 b = surface.vertices[face.vertex[previous(sector.corner)]] - at;
+        const auto [a, b] = Spokes(surface, sector);
         normal +=
             std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * surface.facet_normal(sector.face, sector.side);
     });

@@ -23,6 +23,17 @@ inline uint32_t previous(uint32_t i)
     return i == 0 ? 2 : i - 1;
 }
 
+// Both edges of a sector, from the vertex: that which starts there, and that which ends there.
+struct Spokes {
+    glm::dvec3 leaving, arriving;
+
+    Spokes(const Surface& surface, const Sector& of)
+        : leaving(surface.vertex(of.face, next(of.corner)) - surface.vertex(of.face, of.corner))
+        , arriving(surface.vertex(of.face, previous(of.corner)) - surface.vertex(of.face, of.corner))
+    {
+    }
+};
+
 // What of its face a point lies on, by its barycentric coordinates, which are 0 there but for rounding.
 struct Feature {
     enum class On : uint8_t { face, edge, vertex };

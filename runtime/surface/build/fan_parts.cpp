@@ -93,10 +93,7 @@ glm::dvec3 FanMaker::mean(std::size_t begin, std::size_t end) const
     double longest = 0, shortest = std::numeric_limits<double>::infinity();
     glm::dvec3 by_ball{0}, by_angle{0};
     for (std::size_t i = begin; i < end; ++i) {
-        const auto& corners = surface_.faces[sectors_[i].face].vertex;
-        const glm::dvec3& at = surface_.vertices[corners[sectors_[i].corner]];
-        const glm::dvec3 a = surface_.vertices[corners[next(sectors_[i].corner)]] - at,
-                         b = surface_.vertices[corners[previous(sectors_[i].corner)]] - at;
+        const auto [a, b] = Spokes(surface_, sectors_[i]);
         const double of_a = glm::length(a), of_b = glm::length(b), area = glm::length(glm::cross(a, b));
         longest = std::max({longest, of_a, of_b});
         shortest = std::min({shortest, of_a, of_b});

@@ -73,11 +73,8 @@ private:
     // Some direction from the vertex along the sheet of the fan.
     glm::dvec3 direction(size_t i) const
     {
-        const Sector sector = start(i);
-        const auto& corners = surface_.faces[sector.face].vertex;
-        const glm::dvec3& at = surface_.vertices[corners[sector.corner]];
-        return glm::normalize(surface_.vertices[corners[next(sector.corner)]] - at) +
-               glm::normalize(surface_.vertices[corners[previous(sector.corner)]] - at);
+        const auto [a, b] = Spokes(surface_, start(i));
+        return glm::normalize(a) + glm::normalize(b);
     }
 
     // Whether the direction, which is not on the fan's sheet, leads to the side that the fan sees: of an open fan both
