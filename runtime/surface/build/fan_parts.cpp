@@ -51,21 +51,15 @@ void FanMaker::make(const Sector& start)
         }
 }
 
+// From a border, if there is one, else from the start.
 void FanMaker::walk(const Sector& start)
 {
+    Sector first = start;
+    uint32_t edge = previous(start.corner);
+    while (turn(surface_, first, edge) && first != start) {
+    }
     sectors_.clear();
-    closed_ = false;
-    Sector sector = start;
-    uint32_t edge = start.corner;
-    do sectors_.push_back(sector);
-    while (turn(surface_, sector, edge) && !(closed_ = sector == start));
-    if (closed_) return;
-    const auto ahead = static_cast<std::ptrdiff_t>(sectors_.size());
-    sector = start;
-    edge = previous(start.corner);
-    while (turn(surface_, sector, edge)) sectors_.push_back(sector);
-    std::rotate(sectors_.begin(), sectors_.begin() + ahead, sectors_.end());
-    std::reverse(sectors_.begin(), sectors_.end() - ahead);
+    closed_ = for_each_sector(surface_, first, [&](const Sector& sector) { sectors_.push_back(sector); });
 }
 
 bool FanMaker::is_crease(const Sector& a, const Sector& b) const

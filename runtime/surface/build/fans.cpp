@@ -38,12 +38,12 @@ public:
         for (size_t i = 0; i < fans_.size(); ++i) sheet_[i] = first(sheet_, i);
     }
 
-    // Joins the fans of different sheets that see each other, unless a third sheet stands between. False: it is over.
-    bool join(BuildWork::Share& work)
+    // Joins the fans of different sheets that see each other, unless a third sheet stands between.
+    void join(BuildWork::Share& work)
     {
         const size_t count = fans_.size();
-        if (std::all_of(sheet_.begin(), sheet_.end(), [](size_t sheet) { return sheet == 0; })) return true;
-        if (!work.spend(8 * sectors_ * count)) return false;
+        if (std::all_of(sheet_.begin(), sheet_.end(), [](size_t sheet) { return sheet == 0; })) return;
+        if (!work.spend(8 * sectors_ * count)) return;
         // From along each fan, which of the other sheets' fans are seen.
         std::vector<std::vector<bool>> seen_from(count, std::vector<bool>(count));
         for (size_t j = 0; j < count; ++j) {
@@ -55,12 +55,11 @@ public:
             for (size_t j = 0; j < i; ++j) {
                 if (sheet_[i] == sheet_[j] || !seen_from[j][i] || !seen_from[i][j]) continue;
                 if (first(circle_, i) == first(circle_, j)) continue;
-                if (!work.spend(1 + count / 8)) return false;
+                if (!work.spend(1 + count / 8)) return;
                 if (!same_space(seen_from[i], seen_from[j], i, j)) continue;
                 unite(circle_, i, j);
                 std::swap(fans_[i].next, fans_[j].next);
             }
-        return true;
     }
 
 private:
