@@ -80,22 +80,15 @@ bool find_line(const FacetLines& lines, const dvec3& hand_m, OnLine& at, Foot& f
 // Over the edge, if the lines go on there: the same normals at both its ends.
 bool cross_edge(const Surface& surface, uint32_t edge, uint32_t& face, uint32_t& side, dvec3& b) noexcept
 {
-    const SideEdge link = surface.faces[face].link[edge][side];
-    if (link.face() == face) return false;
-    const Face &here = surface.faces[face], &there = surface.faces[link.face()];
-    const uint32_t from = edge, to = next(edge);
-    const bool same_way = here.vertex[from] == there.vertex[link.edge()];
-    const uint32_t from_there = same_way ? link.edge() : next(link.edge()),
-                   to_there = same_way ? next(link.edge()) : link.edge();
-    if (here.fan_or_part[from][side] != there.fan_or_part[from_there][link.side()] ||
-        here.fan_or_part[to][side] != there.fan_or_part[to_there][link.side()])
-        return false;
-    const double of_from = std::max(0.0, b[from]), of_to = std::max(0.0, b[to]), sum = of_from + of_to;
+    const auto from = smooth_neighbour(surface, {face, edge, side}, edge),
+               to = smooth_neighbour(surface, {face, next(edge), side}, edge);
+    if (!from || !to) return false;
+    const double of_from = std::max(0.0, b[edge]), of_to = std::max(0.0, b[next(edge)]), sum = of_from + of_to;
     b = dvec3(0);
-    b[from_there] = sum > 0 ? of_from / sum : 0.5;
-    b[to_there] = 1 - b[from_there];
-    face = link.face();
-    side = link.side();
+    b[from->corner] = sum > 0 ? of_from / sum : 0.5;
+    b[to->corner] = 1 - b[from->corner];
+    face = from->face;
+    side = from->side;
     return true;
 }
 

@@ -43,17 +43,10 @@ Feature feature_at(const glm::dvec3& barycentric) noexcept
 
 bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
 {
-    const auto& of_corner = surface.faces[face].fan_or_part;
     const auto [on, i] = feature_at(barycentric);
     if (on == Feature::On::face) return false;
-    if (on == Feature::On::vertex) return (of_corner[i][side] & Surface::is_part) != 0;
-    const SideEdge link = surface.faces[face].link[i][side];
-    if (link.face() == face) return true; // a border
-    const auto& there = surface.faces[link.face()].fan_or_part;
-    const bool same_way = surface.faces[link.face()].vertex[link.edge()] == surface.faces[face].vertex[i];
-    const uint32_t first = same_way ? link.edge() : next(link.edge());
-    const uint32_t second = same_way ? next(link.edge()) : link.edge();
-    return of_corner[i][side] != there[first][link.side()] || of_corner[next(i)][side] != there[second][link.side()];
+    if (on == Feature::On::vertex) return (surface.faces[face].fan_or_part[i][side] & Surface::is_part) != 0;
+    return !smooth_neighbour(surface, {face, i, side}, i) || !smooth_neighbour(surface, {face, next(i), side}, i);
 }
 
 FanOutward::FanOutward(const Surface& surface, const Sector& start) noexcept

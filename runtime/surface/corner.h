@@ -4,6 +4,7 @@
 #include "runtime/surface/surface.h"
 
 #include <limits>
+#include <optional>
 
 namespace haptel::runtime {
 
@@ -72,6 +73,16 @@ bool for_each_sector(const Surface& surface, const Sector& start, Visit&& visit)
     edge = previous(start.corner);
     while (turn(surface, sector, edge)) visit(sector);
     return false;
+}
+
+// Of a sector its neighbour over `edge`, one of the two at its corner, if the shading normal there is the same; else,
+// and at a border, nothing.
+inline std::optional<Sector> smooth_neighbour(const Surface& surface, Sector sector, uint32_t edge)
+{
+    const uint32_t own = surface.faces[sector.face].fan_or_part[sector.corner][sector.side];
+    const bool goes_on = turn(surface, sector, edge);
+    if (!goes_on || surface.faces[sector.face].fan_or_part[sector.corner][sector.side] != own) return std::nullopt;
+    return sector;
 }
 
 // Whether the point lies on an edge or a vertex at which the shading normals of the faces around differ, or on a
