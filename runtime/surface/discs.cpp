@@ -70,18 +70,17 @@ std::vector<BoxTree::Disc> discs_of(const std::vector<glm::dvec3>& vertices, con
         }
     }
     std::vector<BoxTree::Disc> discs(nodes.size());
-    in_pieces(nodes.size(), threads, [&](std::size_t first, std::size_t last, std::size_t) {
-        for (std::size_t i = first; i < last; ++i)
-            if (behind[i] > 0 && behind[i] <= BoxTree::Disc::faces_most)
-                discs[i] = disc_around([&](auto&& visit) {
-                    for (std::size_t node = i; node < end[i]; ++node)
-                        for (uint32_t k = 0; k < BoxTree::width; ++k) {
-                            const uint32_t child = nodes[node].child[k];
-                            if (is_empty(nodes[node], k) || !(child & BoxTree::is_face)) continue;
-                            const auto& corners = faces[child & ~BoxTree::is_face].vertex;
-                            visit(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]);
-                        }
-                });
+    each_in_parallel(nodes.size(), threads, [&](uint32_t i) {
+        if (behind[i] > 0 && behind[i] <= BoxTree::Disc::faces_most)
+            discs[i] = disc_around([&](auto&& visit) {
+                for (std::size_t node = i; node < end[i]; ++node)
+                    for (uint32_t k = 0; k < BoxTree::width; ++k) {
+                        const uint32_t child = nodes[node].child[k];
+                        if (is_empty(nodes[node], k) || !(child & BoxTree::is_face)) continue;
+                        const auto& corners = faces[child & ~BoxTree::is_face].vertex;
+                        visit(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]);
+                    }
+            });
     });
     return discs;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 
 namespace haptel::runtime {
@@ -23,6 +24,13 @@ void in_pieces(std::size_t count, unsigned threads, Range&& range)
 {
     in_parallel(pieces_of(count), threads, [&](std::size_t piece) {
         range(piece * items_per_piece, std::min(count, (piece + 1) * items_per_piece), piece);
+    });
+}
+template <class Visit>
+void each_in_parallel(std::size_t count, unsigned threads, Visit&& visit)
+{
+    in_pieces(count, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) visit(static_cast<uint32_t>(i));
     });
 }
 

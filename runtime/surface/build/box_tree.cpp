@@ -192,14 +192,12 @@ std::vector<BoxTree::Node> box_tree_of(const std::vector<glm::dvec3>& vertices, 
                                        unsigned threads)
 {
     std::vector<Item> items(faces.size());
-    in_pieces(faces.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const auto& corners = faces[f].vertex;
-            const glm::dvec3 &a = vertices[corners[0]], &b = vertices[corners[1]], &c = vertices[corners[2]];
-            items[f] = {{glm::vec3(glm::min(a, glm::min(b, c)) * BoxTree::scale) - BoxTree::widening,
-                         glm::vec3(glm::max(a, glm::max(b, c)) * BoxTree::scale) + BoxTree::widening},
-                        uint32_t(f)};
-        }
+    each_in_parallel(faces.size(), threads, [&](uint32_t f) {
+        const auto& corners = faces[f].vertex;
+        const glm::dvec3 &a = vertices[corners[0]], &b = vertices[corners[1]], &c = vertices[corners[2]];
+        items[f] = {{glm::vec3(glm::min(a, glm::min(b, c)) * BoxTree::scale) - BoxTree::widening,
+                     glm::vec3(glm::max(a, glm::max(b, c)) * BoxTree::scale) + BoxTree::widening},
+                    f};
     });
     std::vector<Node> nodes;
     if (items.empty()) return {empty_node()};

@@ -25,14 +25,11 @@ public:
         : faces_(surface.faces)
         , by_low_(surface.vertices.size(), 3 * surface.faces.size(), [this](uint32_t code) { return ends(code).first; })
     {
-        in_pieces(by_low_.numbers(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t low = begin; low < end; ++low) {
-                const std::span<uint32_t> codes = by_low_.of(low);
-                std::sort(codes.begin(), codes.end(), [&](uint32_t a, uint32_t b) {
-                    const uint32_t high_a = ends(a).second, high_b = ends(b).second;
-                    return high_a != high_b ? high_a < high_b : a < b;
-                });
-            }
+        each_in_parallel(by_low_.numbers(), threads, [&](uint32_t low) {
+            const std::span<uint32_t> codes = by_low_.of(low);
+            std::sort(codes.begin(), codes.end(), [&](uint32_t a, uint32_t b) {
+                return std::pair(ends(a).second, a) < std::pair(ends(b).second, b);
+            });
         });
     }
 

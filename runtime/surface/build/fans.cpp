@@ -162,13 +162,12 @@ void make_fans(Surface& surface, const ByNumber& corners, double crease_deg, Bui
         }
         pieces[piece] = {};
     }
-    in_pieces(faces.size(), work.threads(), [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f)
-            for (std::size_t corner = 0; corner < 3; ++corner) {
-                const std::size_t piece = faces[f].vertex[corner] / items_per_piece;
-                for (uint32_t& number : faces[f].fan_or_part[corner])
-                    number += (number & Surface::is_part ? first_part : first_fan)[piece];
-            }
+    each_in_parallel(faces.size(), work.threads(), [&](uint32_t f) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::size_t piece = faces[f].vertex[corner] / items_per_piece;
+            for (uint32_t& number : faces[f].fan_or_part[corner])
+                number += (number & Surface::is_part ? first_part : first_fan)[piece];
+        }
     });
 }
 

@@ -64,12 +64,9 @@ void join(Surface& surface, const Wing& from, const Wing& to)
 
 void link_faces(Surface& surface, const Edges& edges, MeshReport& report, unsigned threads)
 {
-    const auto& v = surface.vertices;
-    in_pieces(surface.faces.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f) {
-            Face& face = surface.faces[f];
-            face.normal = exact_normal(v[face.vertex[0]], v[face.vertex[1]], v[face.vertex[2]]).unit();
-        }
+    each_in_parallel(surface.faces.size(), threads, [&](uint32_t f) {
+        const auto [a, b, c] = surface.corners(f);
+        surface.faces[f].normal = exact_normal(a, b, c).unit();
     });
     std::atomic<std::size_t> border_edges = 0;
     in_pieces(edges.vertices(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {

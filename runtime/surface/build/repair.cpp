@@ -7,6 +7,8 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <tuple>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -61,26 +63,21 @@ std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surf
     const std::size_t count = mesh.positions_m.size();
     std::vector<glm::dvec3> snapped(count);
     std::vector<uint32_t> place(count); // such that equal ones have the same
-    in_pieces(count, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
-            place[i] = ByNumber::none;
-            if (!used[i]) continue;
-            snapped[i] = surface.lattice.snap_vertex(mesh.positions_m[i]) + 0.0; // no -0: equal means equal
-            place[i] = uint32_t(mixed(snapped[i]) % count);
-        }
+    each_in_parallel(count, threads, [&](uint32_t i) {
+        place[i] = ByNumber::none;
+        if (!used[i]) return;
+        snapped[i] = surface.lattice.snap_vertex(mesh.positions_m[i]) + 0.0; // no -0: equal means equal
+        place[i] = uint32_t(mixed(snapped[i]) % count);
     });
     ByNumber by_place(count, count, [&](std::size_t i) { return place[i]; });
     std::vector<uint32_t>& first = place; // from now on the first position with these coordinates
-    in_pieces(count, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-        const auto key = [&](uint32_t i) { return std::array{snapped[i].x, snapped[i].y, snapped[i].z}; };
-        for (std::size_t number = begin; number < end; ++number) {
-            const std::span<uint32_t> order = by_place.of(number);
-            std::sort(order.begin(), order.end(),
-                      [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-            for (std::size_t k = 0; k < order.size(); ++k) {
-                const bool same = k > 0 && snapped[order[k]] == snapped[order[k - 1]];
-                first[order[k]] = same ? first[order[k - 1]] : order[k];
-            }
+    each_in_parallel(count, threads, [&](uint32_t number) {
+        const auto key = [&](uint32_t i) { return std::tuple(snapped[i].x, snapped[i].y, snapped[i].z, i); };
+        const std::span<uint32_t> order = by_place.of(number);
+        std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            const bool same = k > 0 && snapped[order[k]] == snapped[order[k - 1]];
+            first[order[k]] = same ? first[order[k - 1]] : order[k];
         }
     });
     std::size_t vertices = 0;
@@ -122,12 +119,9 @@ size_t keep_faces(Surface& surface, const std::vector<uint8_t>& keep)
 size_t drop_flat_faces(Surface& surface, unsigned threads)
 {
     std::vector<uint8_t> keep(surface.faces.size());
-    const auto& v = surface.vertices;
-    in_pieces(keep.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (size_t f = begin; f < end; ++f) {
-            const Triangle& corners = surface.faces[f].vertex;
-            keep[f] = !exact_normal(v[corners[0]], v[corners[1]], v[corners[2]]).is_zero();
-        }
+    each_in_parallel(keep.size(), threads, [&](uint32_t f) {
+        const auto [a, b, c] = surface.corners(f);
+        keep[f] = !exact_normal(a, b, c).is_zero();
     });
     return keep_faces(surface, keep);
 }
@@ -141,15 +135,11 @@ size_t drop_repeated_faces(Surface& surface, unsigned threads)
     };
     ByNumber by_lowest(surface.vertices.size(), surface.faces.size(), [&](uint32_t f) { return sorted(f)[0]; });
     std::vector<uint8_t> keep(surface.faces.size(), 1);
-    in_pieces(by_lowest.numbers(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t lowest = begin; lowest < end; ++lowest) {
-            const std::span<uint32_t> order = by_lowest.of(lowest);
-            std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-                const Triangle of_a = sorted(a), of_b = sorted(b);
-                return of_a != of_b ? of_a < of_b : a < b;
-            });
-            for (size_t k = 1; k < order.size(); ++k) keep[order[k]] = sorted(order[k]) != sorted(order[k - 1]);
-        }
+    each_in_parallel(by_lowest.numbers(), threads, [&](uint32_t lowest) {
+        const std::span<uint32_t> order = by_lowest.of(lowest);
+        std::sort(order.begin(), order.end(),
+                  [&](uint32_t a, uint32_t b) { return std::pair(sorted(a), a) < std::pair(sorted(b), b); });
+        for (size_t k = 1; k < order.size(); ++k) keep[order[k]] = sorted(order[k]) != sorted(order[k - 1]);
     });
     return keep_faces(surface, keep);
 }

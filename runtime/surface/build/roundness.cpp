@@ -83,9 +83,7 @@ void find_roundness(Surface& surface, unsigned threads)
 {
     surface.roundness.assign(surface.fans.size() + surface.fan_parts.size(), {});
     std::vector<BothSides> of_facets(surface.faces.size());
-    in_pieces(surface.faces.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (auto f = static_cast<uint32_t>(begin); f < end; ++f) of_facets[f] = roundness_of(surface, f);
-    });
+    each_in_parallel(surface.faces.size(), threads, [&](uint32_t f) { of_facets[f] = roundness_of(surface, f); });
     for (uint32_t f = 0; f < surface.faces.size(); ++f)
         for (uint32_t side = 0; side < 2; ++side)
             for (uint32_t corner = 0; corner < 3; ++corner) {
