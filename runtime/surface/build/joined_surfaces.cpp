@@ -142,10 +142,7 @@ std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surface
         if (const auto at = work_of.find(near.first(group[0])); at != work_of.end() && at->second.over())
             found.push_back({group, at->second.error()});
     for (std::vector<uint32_t>& group : meeting.groups()) {
-        const auto is_told = [&](const MeetingSurfaces& those) {
-            return std::find(those.numbers.begin(), those.numbers.end(), group[0]) != those.numbers.end();
-        };
-        if (std::any_of(found.begin(), found.end(), is_told)) continue;
+        if (work_of.at(near.first(group[0])).over()) continue; // told above
         size_t triangles = 0;
         for (const uint32_t number : group) triangles += surfaces[number].surface->faces.size();
         std::string error;
