@@ -23,9 +23,6 @@ constexpr std::size_t bins = 16;
 // Beyond this depth parts are halved, so that the tree ends, whatever the mesh.
 constexpr uint32_t depth_of_halving = 24;
 
-// Parts of so many faces are made one beside the other.
-constexpr std::size_t part_faces = 1 << 14;
-
 struct Box {
     glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
 
@@ -110,11 +107,8 @@ std::pair<Part, Part> split(const Part& part, bool halve)
     const glm::vec3 spread = part.centres.high - part.centres.low;
     const int axis = spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
     const std::size_t cut = cut_of(part, axis, halve);
-    std::nth_element(part.items.begin(), part.items.begin() + std::ptrdiff_t(cut), part.items.end(),
-                     [axis](const Item& a, const Item& b) {
-                         const float x = a.twice_centre(axis), y = b.twice_centre(axis);
-                         return x != y ? x < y : a.face < b.face;
-                     });
+    const auto key = [axis](const Item& item) { return std::pair(item.twice_centre(axis), item.face); };
+    std::ranges::nth_element(part.items, part.items.begin() + std::ptrdiff_t(cut), {}, key);
     return {Part(part.items.first(cut)), Part(part.items.subspan(cut))};
 }
 
@@ -140,18 +134,6 @@ std::vector<Part> children_of(const Part& part, uint32_t depth)
     return parts;
 }
 
-Node empty_node()
-{
-    Node node;
-    for (int axis = 0; axis < 3; ++axis)
-        for (uint32_t k = 0; k < width; ++k) {
-            node.low[axis][k] = std::numeric_limits<float>::infinity();
-            node.high[axis][k] = -node.low[axis][k];
-        }
-    std::fill(std::begin(node.child), std::end(node.child), 0u);
-    return node;
-}
-
 void set(Node& node, std::size_t place, const Box& box, uint32_t child)
 {
     for (int axis = 0; axis < 3; ++axis) {
@@ -161,13 +143,20 @@ void set(Node& node, std::size_t place, const Box& box, uint32_t child)
     node.child[place] = child;
 }
 
+Node empty_node()
+{
+    Node node;
+    for (uint32_t k = 0; k < width; ++k) set(node, k, Box(), 0);
+    return node;
+}
+
 // The node of a part, and behind it those below.
 void add(const Part& part, uint32_t depth, std::vector<Node>& nodes)
 {
     const std::size_t index = nodes.size();
     nodes.push_back(empty_node());
     if (part.items.size() <= width) {
-        std::sort(part.items.begin(), part.items.end(), [](const Item& a, const Item& b) { return a.face < b.face; });
+        std::ranges::sort(part.items, {}, &Item::face);
         for (std::size_t k = 0; k < part.items.size(); ++k)
             set(nodes[index], k, part.items[k].box, part.items[k].face | BoxTree::is_face);
         return;
@@ -200,12 +189,12 @@ std::vector<BoxTree::Node> box_tree_of(const std::vector<glm::dvec3>& vertices, 
                     f};
     });
     std::vector<Node> nodes;
-    if (items.empty()) return {empty_node()};
     // The top, a storey at a time, then what hangs below it.
     std::vector<Waiting> storey{{Part(items), 0, 0, 0}}, below;
     while (!storey.empty()) {
         std::vector<Waiting> large;
-        for (Waiting& waiting : storey) (waiting.part.items.size() > part_faces ? large : below).push_back(waiting);
+        for (Waiting& waiting : storey)
+            (waiting.part.items.size() > items_per_piece ? large : below).push_back(waiting);
         std::vector<std::vector<Part>> children(large.size());
         in_parallel(large.size(), threads,
                     [&](std::size_t i) { children[i] = children_of(large[i].part, large[i].depth); });

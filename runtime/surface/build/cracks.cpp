@@ -58,9 +58,8 @@ private:
         const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
         const size_t middle = begin + (end - begin) / 2;
         std::nth_element(nodes_.begin() + long(begin), nodes_.begin() + long(middle), nodes_.begin() + long(end),
-                         [&](const Node& a, const Node& b) {
-                             const double x = a.at[axis], y = b.at[axis];
-                             return x != y ? x < y : a.vertex < b.vertex;
+                         [axis](const Node& a, const Node& b) {
+                             return std::pair(a.at[axis], a.vertex) < std::pair(b.at[axis], b.vertex);
                          });
         nodes_[middle].axis = axis;
         build(begin, middle);

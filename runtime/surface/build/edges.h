@@ -27,9 +27,7 @@ public:
     {
         each_in_parallel(by_low_.numbers(), threads, [&](uint32_t low) {
             const std::span<uint32_t> codes = by_low_.of(low);
-            std::sort(codes.begin(), codes.end(), [&](uint32_t a, uint32_t b) {
-                return std::pair(ends(a).second, a) < std::pair(ends(b).second, b);
-            });
+            std::ranges::sort(codes, {}, [&](uint32_t code) { return std::pair(ends(code).second, code); });
         });
     }
 

@@ -92,10 +92,7 @@ void for_each_overlap(std::span<const PlacedBox> boxes, Visit&& visit)
 {
     std::vector<uint32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        const double x = boxes[a].minimum.x, y = boxes[b].minimum.x;
-        return x != y ? x < y : a < b;
-    });
+    std::ranges::sort(order, {}, [&](uint32_t i) { return std::pair(boxes[i].minimum.x, i); });
     for (size_t i = 0; i < order.size(); ++i)
         for (size_t k = i + 1; k < order.size() && boxes[order[k]].minimum.x <= boxes[order[i]].maximum.x; ++k)
             if (boxes[order[i]].meets(boxes[order[k]]) && !visit(order[i], order[k])) return;

@@ -74,7 +74,7 @@ std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surf
     each_in_parallel(count, threads, [&](uint32_t number) {
         const auto key = [&](uint32_t i) { return std::tuple(snapped[i].x, snapped[i].y, snapped[i].z, i); };
         const std::span<uint32_t> order = by_place.of(number);
-        std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+        std::ranges::sort(order, {}, key);
         for (std::size_t k = 0; k < order.size(); ++k) {
             const bool same = k > 0 && snapped[order[k]] == snapped[order[k - 1]];
             first[order[k]] = same ? first[order[k - 1]] : order[k];
@@ -137,8 +137,7 @@ size_t drop_repeated_faces(Surface& surface, unsigned threads)
     std::vector<uint8_t> keep(surface.faces.size(), 1);
     each_in_parallel(by_lowest.numbers(), threads, [&](uint32_t lowest) {
         const std::span<uint32_t> order = by_lowest.of(lowest);
-        std::sort(order.begin(), order.end(),
-                  [&](uint32_t a, uint32_t b) { return std::pair(sorted(a), a) < std::pair(sorted(b), b); });
+        std::ranges::sort(order, {}, [&](uint32_t f) { return std::pair(sorted(f), f); });
         for (size_t k = 1; k < order.size(); ++k) keep[order[k]] = sorted(order[k]) != sorted(order[k - 1]);
     });
     return keep_faces(surface, keep);
