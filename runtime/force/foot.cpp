@@ -111,7 +111,7 @@ void find_share(const FacetLines& lines, const OnLine& at, double least, double 
     const double bent = dot(bent_per_m, at.b);
     foot.share = 1;
     foot.share_dp = dvec3(0);
-    if (away * bent <= near_centre && lines.all_upright && least >= 0) return;
+    if (away * bent <= near_centre && lines.upright == dvec3(1) && least >= 0) return;
     const Rise from_centre((at_centre - away * bent) / (at_centre - near_centre)),
         upright(2 * dot(lines.upright, at.b) - 1), within(1 + std::min(0.0, least) / beyond_most);
     foot.share = from_centre.value * upright.value * within.value;

@@ -50,7 +50,6 @@ FacetLines::FacetLines(const Surface& surface, uint32_t of_face, uint32_t of_sid
     turn_dt = cross(n[1], n[2]);
     const dvec3* const by_t[] = {&area, &turn, &turn_dt};
     for (uint32_t i = 0; i < 3; ++i) by_normal[i] = dot(n[0], *by_t[i]), by_area[i] = dot(area, *by_t[i]);
-    all_upright = upright == dvec3(1);
     const double size_m2 = glm::length(area);
     per_m2 = (side ? -1 : 1) / size_m2;
     edge_m = std::sqrt(size_m2);

@@ -26,8 +26,7 @@ struct FacetLines {
     glm::dvec3 sunk_m;               // by corner, as the next ones
     glm::dvec3 bent_in_per_m, bent_out_per_m;
     glm::dvec3 upright; // 1, or 0
-    bool all_upright;
-    bool flat; // and all lines along the facet's normal
+    bool flat;          // and all lines along the facet's normal
 
     struct Height {
         double m = 0;

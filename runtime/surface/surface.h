@@ -137,6 +137,11 @@ struct Surface {
     {
         return fan_or_part & is_part ? fan_parts[fan_or_part & ~is_part].normal : fans[fan_or_part].normal;
     }
+    std::array<glm::dvec3, 3> shading_normals(uint32_t face, uint32_t side) const // of its corners
+    {
+        const auto& of = faces[face].fan_or_part;
+        return {shading_normal(of[0][side]), shading_normal(of[1][side]), shading_normal(of[2][side])};
+    }
     std::size_t number_of(uint32_t fan_or_part) const
     {
         return fan_or_part & is_part ? fans.size() + (fan_or_part & ~is_part) : fan_or_part;

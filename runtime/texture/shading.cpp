@@ -7,32 +7,16 @@
 
 namespace haptel::runtime {
 
-namespace {
-
-struct CornerNormals {
-    glm::dvec3 n[3];
-    CornerNormals(const Surface& surface, uint32_t face, uint32_t side)
-    {
-        const auto& of_corner = surface.faces[face].fan_or_part;
-        for (size_t i = 0; i < 3; ++i) n[i] = surface.shading_normal(of_corner[i][side]);
-    }
-    glm::dvec3 at(const glm::dvec3& w) const { return w.x * n[0] + w.y * n[1] + w.z * n[2]; }
-};
-
-} // namespace
-
 glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
 {
-    const glm::dvec3 sum = CornerNormals(surface, face, side).at(barycentric);
-    const double length = glm::length(sum);
-    return length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
+    return shade(surface, face, side, barycentric, {false, false}).normal;
 }
 
 Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric, Shaded what) noexcept
 {
     Shading shading;
-    const CornerNormals corners(surface, face, side);
-    const glm::dvec3 sum = corners.at(barycentric);
+    const auto n = surface.shading_normals(face, side);
+    const glm::dvec3 sum = barycentric.x * n[0] + barycentric.y * n[1] + barycentric.z * n[2];
     const double length = glm::length(sum);
     shading.normal = length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
     const bool turns = what.normal_dp && length > Surface::least_normal, drawn = what.uv && !surface.uv.empty();
@@ -51,8 +35,8 @@ Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::d
         const auto turn = [&](const glm::dvec3& change) {
             return (change - glm::dot(change, shading.normal) * shading.normal) / length;
         };
-        shading.normal_dp = glm::outerProduct(turn(corners.n[1] - corners.n[0]), second_dp) +
-                            glm::outerProduct(turn(corners.n[2] - corners.n[0]), third_dp);
+        shading.normal_dp =
+            glm::outerProduct(turn(n[1] - n[0]), second_dp) + glm::outerProduct(turn(n[2] - n[0]), third_dp);
     }
     if (!drawn) return shading;
     const auto& of = surface.uv_of[face];

@@ -22,15 +22,12 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
     if (!repair(mesh, *surface, result.report, threads)) return nothing_left();
     const bool is_joined = !surface->origins.empty(); // each part has been built by itself before
     std::optional<Edges> edges;
+    const auto link = [&] { link_faces(*surface, edges.emplace(*surface, threads), result.report, threads); };
     if (work.begin("which of its triangles are neighbours")) {
-        edges.emplace(*surface, threads);
-        link_faces(*surface, *edges, result.report, threads);
+        link();
         if (!is_joined) close_cracks(*surface, result.report, work);
         if (surface->faces.empty()) return nothing_left(); // all of them lay in cracks
-        if (result.report.cracks_closed > 0) {
-            edges.emplace(*surface, threads);
-            link_faces(*surface, *edges, result.report, threads);
-        }
+        if (result.report.cracks_closed > 0) link();
         const ByNumber corners = corners_by_vertex(*surface);
         make_fans(*surface, corners, crease_deg, work);
         gather_uv(*surface, corners);

@@ -13,9 +13,7 @@ namespace {
 // interpolated sum of vertex normals, J its constant derivative.
 double turn_max(const Surface& surface, uint32_t face, uint32_t side)
 {
-    glm::dvec3 n[3];
-    for (size_t i = 0; i < 3; ++i) n[i] = surface.shading_normal(surface.faces[face].fan_or_part[i][side]);
-
+    const auto n = surface.shading_normals(face, side);
     // For unit normals and weights of sum 1: |s|^2 = 1 - sum of w_i w_j |n_i - n_j|^2 over the three pairs.
     double apart = 0;
     bool unit = true;
