@@ -69,18 +69,12 @@ double largest_scale(const std::vector<DeviceText>& devices)
     return scale;
 }
 
-double largest_side_m(const SceneObject& object)
-{
-    const glm::dvec3 sides_m = object.surface->box_maximum_m - object.surface->box_minimum_m;
-    return std::max({sides_m.x, sides_m.y, sides_m.z});
-}
-
 // Mesh files do not say their unit. No hand reaches round something this large.
 constexpr double hand_reach_m = 5;
 
 void check_unit(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
 {
-    const double largest_m = largest_side_m(text.object);
+    const double largest_m = text.object.surface->largest_side_m();
     if (text.mesh.empty() || text.size_m > 0 || largest_m <= hand_reach_m * largest_scale(devices)) return;
     std::ostringstream size;
     size << largest_m; // to 6 digits
@@ -96,7 +90,7 @@ constexpr double seated_reach_m = 0.5, swing_sides_max = 5;
 
 void check_swing(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
 {
-    const double swing_m = text.motion.swing_m, largest_m = largest_side_m(text.object);
+    const double swing_m = text.motion.swing_m, largest_m = text.object.surface->largest_side_m();
     if (swing_m <= std::max(seated_reach_m * largest_scale(devices), swing_sides_max * largest_m)) return;
     std::ostringstream figures; // to 6 digits
     figures << "`" << text.object.name << "` swings by " << swing_m << " m to either side, but is only " << largest_m

@@ -29,7 +29,7 @@ struct Head {
     uint64_t text_bytes = 0, counts[arrays] = {};
     MeshReport report;
     Lattice lattice;
-    glm::dvec3 box_minimum{0}, box_maximum{0}, box_minimum_m{0}, box_maximum_m{0};
+    glm::dvec3 box_minimum_m{0}, box_maximum_m{0};
     double normal_turn_max_per_m = 0;
     uint64_t cuts_itself = 0;
 };
@@ -103,7 +103,6 @@ std::vector<std::string_view> pieces_of_file(const KeptSurface& kept, const Chec
     head.text_bytes = kept.text.size();
     head.report = kept.report;
     head.lattice = surface.lattice;
-    head.box_minimum = surface.box_minimum, head.box_maximum = surface.box_maximum;
     head.box_minimum_m = surface.box_minimum_m, head.box_maximum_m = surface.box_maximum_m;
     head.normal_turn_max_per_m = surface.normal_turn_max_per_m;
     head.cuts_itself = surface.cuts_itself;
@@ -158,7 +157,6 @@ std::optional<KeptSurface> read_surface(int file, const Checksum& key, unsigned 
     if (!whole || sum_of(head, kept.text, sums) != head.content) return {};
 
     surface->lattice = head.lattice;
-    surface->box_minimum = head.box_minimum, surface->box_maximum = head.box_maximum;
     surface->box_minimum_m = head.box_minimum_m, surface->box_maximum_m = head.box_maximum_m;
     surface->normal_turn_max_per_m = head.normal_turn_max_per_m;
     surface->cuts_itself = head.cuts_itself != 0;

@@ -21,6 +21,8 @@ std::string in_words(const Range& range)
            (range.above_minimum ? " up to " : " to ") + shortest(range.maximum);
 }
 
+constexpr double beyond_rounding = 1 + 1e-9;
+
 // Reasons after this many are counted and not told: a program that builds many objects errs in all of them alike.
 constexpr std::size_t most_told = 20;
 
@@ -204,27 +206,17 @@ void check_edge(const Region& region, const Broken& broken)
                              ", half of the region's smallest side: beyond that its effects are nowhere felt in full");
 }
 
-namespace {
-
 // What reaches farther than the object is large is not looked for.
-double largest_side_m(const SceneObject& object)
-{
-    const glm::dvec3 sides_m = object.surface->box_maximum_m - object.surface->box_minimum_m;
-    return std::max({sides_m.x, sides_m.y, sides_m.z}) * (1 + 1e-9);
-}
-
-} // namespace
-
 void check_probe_size(const ProbeSettings& probe, const SceneObject& object, const Broken& broken)
 {
-    if (probe.kind == ProbeKind::sphere && probe.radius_m > largest_side_m(object))
+    if (probe.kind == ProbeKind::sphere && probe.radius_m > object.surface->largest_side_m() * beyond_rounding)
         broken("radius_m",
                "the probe's `radius_m` is larger than `" + object.name + "`: at most the largest side of its box");
 }
 
 void check_effects_reach(const SceneObject& object, const Broken& broken)
 {
-    if (object.effects.reach_m() > largest_side_m(object))
+    if (object.effects.reach_m() > object.surface->largest_side_m() * beyond_rounding)
         broken("reach_m", "the `reach_m` of an effect is larger than `" + object.name +
                               "`: at most the largest side of its box; what is felt farther away is a `[[region]]`");
 }

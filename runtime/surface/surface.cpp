@@ -4,6 +4,8 @@
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/collision.h"
 
+#include <algorithm>
+
 namespace haptel::runtime {
 
 Surface::Surface() = default;
@@ -31,6 +33,12 @@ std::string MeshReport::note() const
 {
     if (border_edges == 0) return {};
     return "open mesh: " + std::to_string(border_edges) + " border edges, past which a hand gets behind the surface";
+}
+
+double Surface::largest_side_m() const
+{
+    const glm::dvec3 sides_m = box_maximum_m - box_minimum_m;
+    return std::max({sides_m.x, sides_m.y, sides_m.z});
 }
 
 double Surface::gap_to_box_m(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept

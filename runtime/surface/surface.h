@@ -105,8 +105,7 @@ struct Surface {
     std::vector<Roundness> roundness; // of the fans, then of their parts
     double normal_turn_max_per_m = 0; // no shading normal turns faster along its face (spectral norm); 0: flat facets
     std::unique_ptr<const BoxTree> tree;
-    glm::dvec3 box_minimum{0}, box_maximum{0};     // of the vertices, lattice units
-    glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // the same, metres
+    glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // of the vertices
 
     // Interpolated normals shorter than this have no direction: the facet's is felt.
     static constexpr double least_normal = 1e-6;
@@ -153,6 +152,7 @@ struct Surface {
     // One piece that does not cut itself: links lead everywhere that a point comes to.
     bool is_clean() const { return origins.empty() && !cuts_itself; }
 
+    double largest_side_m() const; // of its box
     // From the object's box to that of the segment; 0 where they meet.
     double gap_to_box_m(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;
 

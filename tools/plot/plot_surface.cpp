@@ -13,8 +13,8 @@ NormalBelow textured_normal_below(const std::shared_ptr<const Scene>& scene, con
     if (scene->objects.empty()) return {};
     const SceneObject& object = scene->objects.front();
     const Surface& surface = *object.surface;
-    const glm::dvec3 low_m = surface.lattice.metres(surface.box_minimum);
-    const glm::dvec3 high_m = surface.lattice.metres(surface.box_maximum);
+    const glm::dvec3 low_m = surface.box_minimum_m;
+    const glm::dvec3 high_m = surface.box_maximum_m;
     const glm::dvec3 middle_m = workspace.to_hand(object.placement.to_world((low_m + high_m) / 2.0));
     const double reach_m = glm::length(high_m - low_m) / workspace.scale; // from its middle, in every direction
 

@@ -78,7 +78,7 @@ bool edges_meet_faces(const Surface& edges, const Placement& of_edges, const Sur
                       double gap_m, BuildWork& work)
 {
     const double gap = gap_m / faces.lattice.unit_m;
-    const FaceBox box{faces.box_minimum - gap, faces.box_maximum + gap};
+    const FaceBox box{faces.lattice.units(faces.box_minimum_m) - gap, faces.lattice.units(faces.box_maximum_m) + gap};
     const glm::dvec3 middle = edges.lattice.units(
         of_edges.to_object(of_faces.to_world(faces.lattice.metres(0.5 * (box.minimum + box.maximum)))));
     const double radius = 0.5 * glm::distance(box.minimum, box.maximum) * faces.lattice.unit_m / edges.lattice.unit_m;

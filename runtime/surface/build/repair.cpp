@@ -185,14 +185,13 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report, unsigned thr
     if (surface.faces.empty()) return false;
 
     // The box of what is left; vertices of dropped triangles stay, unused and harmless, but do not widen it.
-    surface.box_minimum = surface.box_maximum = surface.vertices[surface.faces[0].vertex[0]];
+    surface.box_minimum_m = surface.box_maximum_m = surface.vertex_m(0, 0);
     for (const Face& face : surface.faces)
         for (uint32_t i : face.vertex) {
-            surface.box_minimum = glm::min(surface.box_minimum, surface.vertices[i]);
-            surface.box_maximum = glm::max(surface.box_maximum, surface.vertices[i]);
+            const glm::dvec3 p_m = surface.lattice.metres(surface.vertices[i]);
+            surface.box_minimum_m = glm::min(surface.box_minimum_m, p_m);
+            surface.box_maximum_m = glm::max(surface.box_maximum_m, p_m);
         }
-    surface.box_minimum_m = surface.lattice.metres(surface.box_minimum);
-    surface.box_maximum_m = surface.lattice.metres(surface.box_maximum);
     return true;
 }
 

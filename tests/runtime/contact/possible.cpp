@@ -103,7 +103,7 @@ std::ostream& operator<<(std::ostream& out, const Verdict& v)
 double off_surface(const Surface& surface, const ExactMesh& exact, const Proxy& proxy)
 {
     if (proxy.on == Proxy::On::nothing) return 0;
-    const dvec3 sides = surface.box_maximum - surface.box_minimum;
+    const dvec3 sides = (surface.box_maximum_m - surface.box_minimum_m) / surface.lattice.unit_m;
     return glm::length(proxy.at - exact.nearest(proxy.face, proxy.at)) / std::max({sides.x, sides.y, sides.z});
 }
 
@@ -145,7 +145,7 @@ Verdict judge_ball(const std::shared_ptr<const Surface>& shared, uint64_t ticks,
         if (friction.static_coefficient > 0 && touch.touching)
             for (const uint32_t face : exact.near(at, grown + 0.01 * surface.lattice.extent))
                 off = std::min(off, std::abs(glm::distance(exact.nearest(face, at), at) - grown));
-        const dvec3 sides = surface.box_maximum - surface.box_minimum;
+        const dvec3 sides = (surface.box_maximum_m - surface.box_minimum_m) / surface.lattice.unit_m;
         const bool is_cut = contact->counters().walks_cut > verdict.cut; // it is on its way
         if (!is_cut) verdict.off_surface = std::max(verdict.off_surface, off / std::max({sides.x, sides.y, sides.z}));
         ++verdict.ticks;

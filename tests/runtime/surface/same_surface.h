@@ -49,7 +49,6 @@ inline std::string first_difference(const runtime::Surface& a, const runtime::Su
     if (a.cuts_itself != b.cuts_itself) return "cuts itself";
     if (!same_bits(a.normal_turn_max_per_m, b.normal_turn_max_per_m)) return "turn of normals";
     if (!same_bits(a.lattice, b.lattice)) return "lattice";
-    if (!same_bits(a.box_minimum, b.box_minimum) || !same_bits(a.box_maximum, b.box_maximum)) return "box";
     if (!same_bits(a.box_minimum_m, b.box_minimum_m) || !same_bits(a.box_maximum_m, b.box_maximum_m)) return "box_m";
     return {};
 }
