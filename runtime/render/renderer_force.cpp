@@ -12,8 +12,6 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr double two_pi = 6.283185307179586;
-
 // Copied. Made in place, its ones are written in two pieces, and who reads one at once waits until both are in memory.
 const TextureSample flat_sample;
 
@@ -240,7 +238,7 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     if (texture.vibration_n > 0) {
         const double most_n = std::min(texture.vibration_n, std::max(0.0, glm::dot(elastic.force_n, foot.normal)));
         if (texture.vibration_hz * period_s_ <= 0.5)
-            swing_n = most_n * std::sin(two_pi * touched.swing_turns);
+            swing_n = most_n * swing(touched.swing_turns);
         else
             result.faults |= fault_vibration_too_fast;
     }

@@ -1,8 +1,10 @@
 #include "runtime/scene/motion.h"
 
 #include "runtime/scene/validation.h"
+#include "runtime/scene/vibration.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -10,7 +12,7 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr double two_pi = 6.283185307179586;
+constexpr double two_pi = 2 * std::numbers::pi;
 
 // Per second. Up to here angles are finite at any time of a run.
 constexpr double fastest = 1e9;
@@ -22,7 +24,7 @@ SteadyMotion::SteadyMotion(const Placement& start, const Figures& figures) : sta
 std::optional<Placement> SteadyMotion::at(double time_s) const noexcept
 {
     Placement now = start_;
-    now.position_m += std::sin(two_pi * std::remainder(figures_.swing_hz * time_s, 1.0)) * figures_.swing_m;
+    now.position_m += swing(figures_.swing_hz * time_s) * figures_.swing_m;
     if (figures_.spin_rad_per_s != 0) {
         const double angle = two_pi * std::remainder(figures_.spin_rad_per_s * time_s / two_pi, 1.0);
         now.rotation = glm::dmat3(glm::rotate(glm::dmat4(1), angle, figures_.axis)) * start_.rotation;

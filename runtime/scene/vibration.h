@@ -6,12 +6,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <numbers>
 
 namespace haptel::runtime {
 
 // In which a vibration comes and goes, seconds: no step in force, and no click.
 inline constexpr double vibration_ramp_s = 0.02;
+
+// To and fro, from 0 and upward first, once in each turn.
+inline double swing(double turns) noexcept
+{
+    return std::sin(2 * std::numbers::pi * std::remainder(turns, 1.0));
+}
 
 struct Vibration {
     double force_n = 0;            // >= 0, amplitude; 0: none
@@ -21,11 +27,7 @@ struct Vibration {
     bool acts() const { return force_n > 0; }
 
     // Without its direction. Of time alone, so that runs can be repeated bit for bit.
-    double swing_n(double time_s) const noexcept
-    {
-        constexpr double two_pi = 6.283185307179586;
-        return force_n * std::sin(two_pi * std::remainder(frequency_hz * time_s, 1.0));
-    }
+    double swing_n(double time_s) const noexcept { return force_n * swing(frequency_hz * time_s); }
 };
 
 // How much of a vibration is felt: follows what is wanted, 0 to 1, by a ramp.
