@@ -36,7 +36,7 @@ std::optional<MotionBounds> SteadyMotion::bounds(const glm::dvec3& centre_m, dou
     const glm::dvec3 arm_m = start_.rotation * centre_m;
     MotionBounds bounds{start_.position_m + arm_m, radius_m + swing_m, 2 * swing_m, turn};
     if (turn != 0) {
-        const glm::dvec3 axis = glm::normalize(figures_.axis), along_m = glm::dot(arm_m, axis) * axis;
+        const glm::dvec3 axis = figures_.axis / glm::length(figures_.axis), along_m = glm::dot(arm_m, axis) * axis;
         bounds.centre_m = start_.position_m + along_m;
         bounds.radius_m += glm::distance(arm_m, along_m);
     }

@@ -3,10 +3,10 @@
 #include "runtime/surface/build/build.h"
 #include "runtime/surface/build/by_number.h"
 #include "runtime/surface/build/fan_parts.h"
+#include "runtime/surface/build/groups.h"
 #include "runtime/surface/in_parallel.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -27,22 +27,21 @@ public:
         , sheet_(fans_.size())
         , circle_(fans_.size())
     {
-        std::iota(sheet_.begin(), sheet_.end(), size_t{0});
-        std::iota(circle_.begin(), circle_.end(), size_t{0});
-        for (size_t i = 0; i < fans_.size(); ++i)
+        Groups sheets(fans_.size());
+        for (uint32_t i = 0; i < fans_.size(); ++i)
             for_each_sector(surface_, start(i), [&](const Sector& sector) {
                 ++sectors_;
                 const Face& face = surface_.faces[sector.face];
-                unite(sheet_, i, some_.fan_of(face.fan_or_part[sector.corner][1 - sector.side]) - first_fan_);
+                sheets.unite(i, some_.fan_of(face.fan_or_part[sector.corner][1 - sector.side]) - first_fan_);
             });
-        for (size_t i = 0; i < fans_.size(); ++i) sheet_[i] = first(sheet_, i);
+        for (uint32_t i = 0; i < fans_.size(); ++i) sheet_[i] = sheets.first(i);
     }
 
     // Joins the fans of different sheets that see each other, unless a third sheet stands between.
     void join(BuildWork::Share& work)
     {
         const size_t count = fans_.size();
-        if (std::all_of(sheet_.begin(), sheet_.end(), [](size_t sheet) { return sheet == 0; })) return;
+        if (std::all_of(sheet_.begin(), sheet_.end(), [](uint32_t sheet) { return sheet == 0; })) return;
         if (!work.spend(8 * sectors_ * count)) return;
         // From along each fan, which of the other sheets' fans are seen.
         std::vector<std::vector<bool>> seen_from(count, std::vector<bool>(count));
@@ -51,13 +50,13 @@ public:
             for (size_t k = 0; k < count; ++k)
                 if (sheet_[k] != sheet_[j]) seen_from[j][k] = sees(k, along);
         }
-        for (size_t i = 0; i < count; ++i)
-            for (size_t j = 0; j < i; ++j) {
+        for (uint32_t i = 0; i < count; ++i)
+            for (uint32_t j = 0; j < i; ++j) {
                 if (sheet_[i] == sheet_[j] || !seen_from[j][i] || !seen_from[i][j]) continue;
-                if (first(circle_, i) == first(circle_, j)) continue;
+                if (circle_.are_together(i, j)) continue;
                 if (!work.spend(1 + count / 8)) return;
                 if (!same_space(seen_from[i], seen_from[j], i, j)) continue;
-                unite(circle_, i, j);
+                circle_.unite(i, j);
                 std::swap(fans_[i].next, fans_[j].next);
             }
     }
@@ -101,24 +100,13 @@ private:
         return true;
     }
 
-    static size_t first(std::vector<size_t>& of, size_t i)
-    {
-        while (of[i] != i) i = of[i] = of[of[i]];
-        return i;
-    }
-    static void unite(std::vector<size_t>& of, size_t i, size_t j)
-    {
-        const auto [low, high] = std::minmax({first(of, i), first(of, j)});
-        of[high] = low;
-    }
-
     const Surface& surface_;
     SomeFans& some_;
     uint32_t first_fan_;
     std::span<Fan> fans_;
-    // For each fan the first of its sheet, and on the way to the first of its circle of `next`.
-    std::vector<size_t> sheet_, circle_;
-    size_t sectors_ = 0; // of all fans
+    std::vector<uint32_t> sheet_; // for each fan the first of its sheet
+    Groups circle_;               // of `next`
+    size_t sectors_ = 0;          // of all fans
 };
 
 } // namespace
