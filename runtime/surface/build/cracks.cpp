@@ -5,9 +5,11 @@
 #include "runtime/surface/build/build.h"
 #include "runtime/surface/build/edges.h"
 #include "runtime/surface/corner.h"
+#include "runtime/surface/swept_region.h"
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -18,79 +20,38 @@ namespace {
 // 1e-6 of the object's size: what six decimal digits, or single precision, cannot tell apart.
 constexpr double crack = 2097152;
 
-// What a corner that a border comes near takes, in looks: it comes from memory where there are millions.
-constexpr size_t looks_per_corner = 3;
+// What a node that a border comes near takes, in looks: it comes from memory where there are millions.
+constexpr size_t looks_per_node = 8;
 
-// Vertices in a tree of halves, to ask which lie near a segment. A half is parted across its widest side: of vertices
-// in a line or a plane that leaves as few to look at as of those in space.
-class NearVertices {
+// Triangles without area in the corners, so that the tree of boxes tells which of them lie near a segment: at least all
+// within a crack of it.
+class CornersNear {
 public:
-    NearVertices(const std::vector<glm::dvec3>& positions, const std::vector<uint32_t>& vertices)
+    CornersNear(const Surface& surface, const std::vector<uint32_t>& corners, BuildWork& work)
+        : points_(corners.size()), work_(work)
     {
-        nodes_.reserve(vertices.size());
-        for (uint32_t vertex : vertices) nodes_.push_back({positions[vertex], vertex, 0});
-        build(0, nodes_.size());
+        for (size_t k = 0; k < corners.size(); ++k) points_[k].vertex = {corners[k], corners[k], corners[k]};
+        tree_.emplace(surface.vertices, points_, box_tree_of(surface.vertices, points_, work.threads()),
+                      work.threads());
     }
-
-    // At least all that come within `reach` of the segment, and of others not many.
     template <class Visit>
-    void visit_near(const glm::dvec3& from, const glm::dvec3& to, double reach, Visit&& visit_one) const
+    void visit(const glm::dvec3& from, const glm::dvec3& to, Visit&& visit_one) const
     {
-        near(0, nodes_.size(), from, to - from, 0, 1, 2 * reach, visit_one); // twice: whatever rounding does
+        struct Counted {
+            SweptRegion region;
+            BuildWork& work;
+            uint32_t met(const BoxTree::Node& node) const { return work.spend(looks_per_node) ? region.met(node) : 0; }
+        };
+        (void)tree_->for_each(Counted{SweptRegion(from, to, from, to, crack), work_}, [&](uint32_t k) {
+            visit_one(points_[k].vertex[0]);
+            return true;
+        });
     }
 
 private:
-    struct Node { // with its position: to follow an index to it costs most of the time
-        glm::dvec3 at;
-        uint32_t vertex;
-        int axis;
-    };
-
-    void build(size_t begin, size_t end)
-    {
-        if (end - begin < 2) return;
-        glm::dvec3 minimum = nodes_[begin].at, maximum = minimum;
-        for (size_t k = begin + 1; k < end; ++k) {
-            minimum = glm::min(minimum, nodes_[k].at);
-            maximum = glm::max(maximum, nodes_[k].at);
-        }
-        const glm::dvec3 size = maximum - minimum;
-        const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-        const size_t middle = begin + (end - begin) / 2;
-        std::nth_element(nodes_.begin() + long(begin), nodes_.begin() + long(middle), nodes_.begin() + long(end),
-                         [axis](const Node& a, const Node& b) {
-                             return std::pair(a.at[axis], a.vertex) < std::pair(b.at[axis], b.vertex);
-                         });
-        nodes_[middle].axis = axis;
-        build(begin, middle);
-        build(middle + 1, end);
-    }
-
-    // As far as the segment goes on a side of a vertex, with `reach` more on either side of the plane between.
-    template <class Visit>
-    void near(size_t begin, size_t end, const glm::dvec3& from, const glm::dvec3& along, double first, double last,
-              double reach, Visit& visit_one) const
-    {
-        if (begin >= end || !(first <= last)) return;
-        const size_t middle = begin + (end - begin) / 2;
-        const auto& [p, vertex, axis] = nodes_[middle];
-        const double from_plane = p[axis] - from[axis], slope = along[axis];
-        // Where the segment is up to `reach` above the plane, and down to `reach` below it.
-        double below_first = first, below_last = last, above_first = first, above_last = last;
-        if (slope != 0) {
-            const double leaves = (from_plane + reach) / slope, enters = (from_plane - reach) / slope;
-            (slope > 0 ? below_last : below_first) = slope > 0 ? std::min(last, leaves) : std::max(first, leaves);
-            (slope > 0 ? above_first : above_last) = slope > 0 ? std::max(first, enters) : std::min(last, enters);
-        } else {
-            if (from_plane < -reach) below_last = first - 1;
-            if (from_plane > reach) above_last = first - 1;
-        }
-        near(begin, middle, from, along, below_first, below_last, reach, visit_one);
-        visit_one(vertex, p);
-        near(middle + 1, end, from, along, above_first, above_last, reach, visit_one);
-    }
-
-    std::vector<Node> nodes_;
+    std::vector<Face> points_;
+    BuildWork& work_;
+    std::optional<BoxTree> tree_;
 };
 
 class CrackFiller {
@@ -107,13 +68,12 @@ public:
         std::vector<uint32_t> becomes(surface_.vertices.size());
         std::iota(becomes.begin(), becomes.end(), 0u);
         size_t welded = 0;
-        const NearVertices corners(surface_.vertices, corners_);
+        const CornersNear corners(surface_, corners_, work_);
         for (uint32_t corner : corners_) {
             if (work_.over()) return 0;
             uint32_t first = corner;
-            corners.visit_near(at(corner), at(corner), crack, [&](uint32_t other, const glm::dvec3& there) {
-                work_.spend();
-                if (other < first && becomes[other] == other && glm::distance(at(corner), there) <= crack &&
+            corners.visit(at(corner), at(corner), [&](uint32_t other) {
+                if (other < first && becomes[other] == other && glm::distance(at(corner), at(other)) <= crack &&
                     !std::binary_search(joined.begin(), joined.end(), std::pair(other, corner)))
                     first = other;
             });
@@ -132,7 +92,7 @@ public:
     size_t cut()
     {
         size_t cuts = 0;
-        const NearVertices corners(surface_.vertices, corners_);
+        const CornersNear corners(surface_, corners_, work_);
         std::vector<bool> touched(surface_.faces.size());
         for (HalfEdge border : borders_) {
             if (work_.over()) return 0;
@@ -174,14 +134,13 @@ private:
         corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
     }
 
-    bool first_corner_on(HalfEdge border, const NearVertices& corners, uint32_t& corner, double& share) const
+    bool first_corner_on(HalfEdge border, const CornersNear& corners, uint32_t& corner, double& share) const
     {
         const glm::dvec3 &a = at(begin(border)), &b = at(end(border)), along = b - a;
         const uint32_t tip = surface_.faces[border.face()].vertex[previous(border.edge())];
         const double length = glm::length(along);
-        corners.visit_near(a, b, crack, [&](uint32_t candidate, const glm::dvec3& there) {
-            work_.spend(looks_per_corner);
-            const glm::dvec3 beside = there - a;
+        corners.visit(a, b, [&](uint32_t candidate) {
+            const glm::dvec3 beside = at(candidate) - a;
             const double way = glm::dot(beside, along) / length;
             if (candidate == tip || way <= crack || way >= length - crack || way / length >= share ||
                 glm::length(beside - way / length * along) > crack)
