@@ -24,8 +24,8 @@ glm::vec3 rounded(const glm::dvec3& p)
 // visits faces.
 class SegmentQuery {
 public:
-    SegmentQuery(const glm::dvec3& from, const glm::dvec3& to, FaceVisitor& visitor)
-        : from_(rounded(from)), visitor_(visitor)
+    SegmentQuery(const glm::dvec3& from, const glm::dvec3& to, const BoxTree::Visit& visit)
+        : from_(rounded(from)), visit_(visit)
     {
         const glm::vec3 along = rounded(to - from);
         for (int k = 0; k < 3; ++k) {
@@ -49,7 +49,7 @@ public:
         *reinterpret_cast<Four*>(at + first) = in;
         return in <= out;
     }
-    void visit(uint32_t face) { upto = std::min(upto, rounded_up(visitor_.visit(face))); }
+    void visit(uint32_t face) { upto = std::min(upto, rounded_up(visit_(face))); }
 
 private:
     // Past any rounding.
@@ -57,7 +57,7 @@ private:
 
     glm::vec3 from_, per_along_;
     bool backward_[3];
-    FaceVisitor& visitor_;
+    const BoxTree::Visit& visit_;
 };
 
 // `at` is the square of the distance.
@@ -94,13 +94,8 @@ private:
 class VisitedBall : public BallQuery {
 public:
     VisitedBall(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, const glm::dvec3& centre,
-                double radius, FaceVisitor& visitor)
-        : BallQuery(centre, radius)
-        , vertices_(vertices)
-        , faces_(faces)
-        , centre_(centre)
-        , radius_(radius)
-        , visitor_(visitor)
+                double radius, const BoxTree::Visit& visit)
+        : BallQuery(centre, radius), vertices_(vertices), faces_(faces), centre_(centre), radius_(radius), visit_(visit)
     {
     }
 
@@ -110,7 +105,7 @@ public:
         const glm::dvec3 &a = vertices_[corners[0]], &b = vertices_[corners[1]], &c = vertices_[corners[2]];
         const glm::dvec3 away = centre_ - glm::clamp(centre_, glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)));
         if (glm::dot(away, away) > radius_ * radius_) return;
-        const double now = visitor_.visit(face);
+        const double now = visit_(face);
         if (!(now < radius_)) return;
         radius_ = now;
         now > 0 ? shrink_to(now) : end();
@@ -121,7 +116,7 @@ private:
     const std::vector<Face>& faces_;
     const glm::dvec3& centre_;
     double radius_;
-    FaceVisitor& visitor_;
+    const BoxTree::Visit& visit_;
 };
 
 class ListedBall : public BallQuery {
@@ -188,15 +183,15 @@ void BoxTree::ask(Query& query) const noexcept
     }
 }
 
-void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, FaceVisitor& visitor) const noexcept
+void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, const BoxTree::Visit& visit) const noexcept
 {
-    SegmentQuery query(from, to, visitor);
+    SegmentQuery query(from, to, visit);
     ask(query);
 }
 
-void BoxTree::ball(const glm::dvec3& centre, double radius, FaceVisitor& visitor) const noexcept
+void BoxTree::ball(const glm::dvec3& centre, double radius, const BoxTree::Visit& visit) const noexcept
 {
-    VisitedBall query(vertices_, faces_, centre, radius, visitor);
+    VisitedBall query(vertices_, faces_, centre, radius, visit);
     ask(query);
 }
 

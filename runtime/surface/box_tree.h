@@ -12,21 +12,11 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
 namespace haptel::runtime {
-
-// Told of each candidate. Returns how much is still of interest. Of a segment a fraction: 1 to see all the others, the
-// fraction of the best hit so far to see only what may come before it. Of a ball how far from its centre: the distance
-// of the nearest thing so far to see only what may be nearer, 0: enough is known.
-class FaceVisitor {
-public:
-    virtual double visit(uint32_t face) noexcept = 0;
-
-protected:
-    ~FaceVisitor() = default;
-};
 
 class BoxTree {
 public:
@@ -62,10 +52,15 @@ public:
     // A bit for each child of a node whose box comes within `radius` of the centre.
     uint32_t children_near(uint32_t node, const glm::dvec3& centre, double radius) const noexcept;
 
-    void segment(const glm::dvec3& from, const glm::dvec3& to, FaceVisitor& visitor) const noexcept;
+    // Told of each candidate. Returns how much is still of interest. Of a segment a fraction: 1 to see all the others,
+    // the fraction of the best hit so far to see only what may come before it. Of a ball how far from its centre: the
+    // distance of the nearest thing so far to see only what may be nearer, 0: enough is known. By std::ref: what is
+    // called is not copied, which might allocate.
+    using Visit = std::function<double(uint32_t face)>;
+    void segment(const glm::dvec3& from, const glm::dvec3& to, const Visit& visit) const noexcept;
 
     // Every face whose box comes within `radius` of the centre, roughly the near ones first.
-    void ball(const glm::dvec3& centre, double radius, FaceVisitor& visitor) const noexcept;
+    void ball(const glm::dvec3& centre, double radius, const Visit& visit) const noexcept;
     // The same faces, and some a little farther away, as a list that has room for so many; false if there are more.
     bool ball(const glm::dvec3& centre, double radius, std::size_t most, std::vector<uint32_t>& faces) const noexcept;
 

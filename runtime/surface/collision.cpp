@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace haptel::runtime {
 
@@ -16,93 +17,50 @@ bool StartsOn::skips(uint32_t face, const Face& data) const
     return std::find(faces_, faces_ + face_count_, face) != faces_ + face_count_;
 }
 
-namespace {
-
-class FirstCrossing final : public FaceVisitor {
-public:
-    FirstCrossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,
-                  Crossing& first, CollisionCount& count)
-        : surface_(surface), from_(from), to_(to), start_(start), first_(first), count_(count)
-    {
-    }
-
-    bool found = false;
-
-    double visit(uint32_t face) noexcept override
-    {
-        const Face& data = surface_.faces[face];
-        ++count_.triangles_tested;
-        Crossing candidate;
-        candidate.face = face;
-        const auto [a, b, c] = surface_.corners(face);
-        if (!start_.skips(face, data) && crosses(from_, to_, a, b, c, candidate) &&
-            (!found || earlier(candidate, first_))) {
-            found = true;
-            first_ = candidate;
-        }
-        return found ? first_.fraction() : 1.0;
-    }
-
-private:
-    const Surface& surface_;
-    const glm::dvec3 &from_, &to_;
-    const StartsOn& start_;
-    Crossing& first_;
-    CollisionCount& count_;
-};
-
 // A ball that is somewhat smaller than it could be is found much sooner: of many triangles nearly equally far away few
 // are looked at.
 //
 // A triangle is at least as far away as its plane and, in the plane, as each of its edges' lines beyond which the
 // centre lies. Unlike the nearest point of a sliver this does not depend on which of its features is the nearest.
-class LeastDistance final : public FaceVisitor {
-public:
-    LeastDistance(const Surface& surface, const glm::dvec3& centre, double radius)
-        : least(radius), surface_(surface), centre_(centre)
-    {
-    }
-
-    static constexpr double share = 0.6;
-    double least;
-
-    double visit(uint32_t face) noexcept override
-    {
-        const Face& data = surface_.faces[face];
-        const glm::dvec3& n = data.normal;
-        const double above = glm::dot(n, centre_ - surface_.vertices[data.vertex[0]]);
-        double beyond = 0;
-        for (uint32_t i = 0; i < 3; ++i) {
-            const glm::dvec3& a = surface_.vertices[data.vertex[i]];
-            const glm::dvec3 outward = glm::cross(surface_.vertices[data.vertex[(i + 1) % 3]] - a, n);
-            beyond = std::max(beyond, glm::dot(outward, centre_ - a) / glm::length(outward));
-        }
-        const double distance = std::sqrt(above * above + beyond * beyond) - 1; // one unit: rounding
-        least = std::min(least, std::max(0.0, share * distance));
-        return least;
-    }
-
-private:
-    const Surface& surface_;
-    const glm::dvec3& centre_;
-};
-
-} // namespace
-
 double clearance(const Surface& surface, const glm::dvec3& centre, double radius) noexcept
 {
-    LeastDistance distance(surface, centre, radius);
-    surface.tree->ball(centre, radius, distance);
-    return distance.least;
+    constexpr double share = 0.6;
+    double least = radius;
+    const auto visit = [&](uint32_t face) {
+        const auto corner = surface.corners(face);
+        const glm::dvec3& n = surface.faces[face].normal;
+        const double above = glm::dot(n, centre - corner[0]);
+        double beyond = 0;
+        for (uint32_t i = 0; i < 3; ++i) {
+            const glm::dvec3 outward = glm::cross(corner[(i + 1) % 3] - corner[i], n);
+            beyond = std::max(beyond, glm::dot(outward, centre - corner[i]) / glm::length(outward));
+        }
+        const double distance = std::sqrt(above * above + beyond * beyond) - 1; // one unit: rounding
+        return least = std::min(least, std::max(0.0, share * distance));
+    };
+    surface.tree->ball(centre, radius, std::ref(visit));
+    return least;
 }
 
 bool first_crossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,
                     Crossing& crossing, CollisionCount& count) noexcept
 {
     ++count.sweeps;
-    FirstCrossing first(surface, from, to, start, crossing, count);
-    surface.tree->segment(from, to, first);
-    return first.found;
+    bool found = false;
+    const auto visit = [&](uint32_t face) {
+        ++count.triangles_tested;
+        Crossing candidate;
+        candidate.face = face;
+        const auto [a, b, c] = surface.corners(face);
+        if (!start.skips(face, surface.faces[face]) && crosses(from, to, a, b, c, candidate) &&
+            (!found || earlier(candidate, crossing))) {
+            found = true;
+            crossing = candidate;
+        }
+        return found ? crossing.fraction() : 1.0;
+    };
+    surface.tree->segment(from, to, std::ref(visit));
+    return found;
 }
 
 glm::dvec3 barycentric_of(const Surface& surface, uint32_t face, const glm::dvec3& point) noexcept

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -16,55 +17,36 @@ constexpr std::size_t looks_per_test = 8;
 
 // Two faces that are not neighbours cut or touch each other exactly if an edge of one meets the other. Ties count
 // as touching. A face in the plane of the edge cannot stop a path along it.
-class EdgeAgainstFaces final : public FaceVisitor {
-public:
-    EdgeAgainstFaces(const Surface& surface, BuildWork& work, std::vector<std::atomic<bool>>& is_pierced)
-        : surface_(surface), work_(work), is_pierced_(is_pierced)
-    {
-    }
+bool meets(const glm::dvec3& p, const glm::dvec3& q, const std::array<glm::dvec3, 3>& corners)
+{
+    const auto& [a, b, c] = corners;
+    const int side_p = orientation(a, b, c, p), side_q = orientation(a, b, c, q);
+    if (side_p * side_q > 0 || (side_p == 0 && side_q == 0)) return false;
+    const int ab = line_orientation(p, q, a, b), bc = line_orientation(p, q, b, c), ca = line_orientation(p, q, c, a);
+    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+}
 
-    // With all the faces that have it.
-    void run(std::span<const uint32_t> edge)
-    {
-        if (!work_.spend()) return;
-        edge_ = edge;
-        const HalfEdge first{edge[0]};
-        from_ = surface_.faces[first.face()].vertex[first.edge()];
-        to_ = surface_.faces[first.face()].vertex[next(first.edge())];
-        surface_.tree->segment(surface_.vertices[from_], surface_.vertices[to_], *this);
-    }
-
-    double visit(uint32_t other) noexcept override
-    {
-        if (!work_.spend()) return 0;
-        const auto& corners = surface_.faces[other].vertex;
-        for (uint32_t corner : corners)
-            if (corner == from_ || corner == to_) return 1.0;
-        work_.spend(looks_per_test);
-        if (!meets(corners)) return 1.0;
-        for (const uint32_t code : edge_) is_pierced_[HalfEdge{code}.face()].store(true, std::memory_order_relaxed);
-        is_pierced_[other].store(true, std::memory_order_relaxed);
-        return work_.spend(edge_.size()) ? 1.0 : 0.0;
-    }
-
-private:
-    bool meets(const std::array<uint32_t, 3>& corners) const
-    {
-        const auto& v = surface_.vertices;
-        const glm::dvec3 &p = v[from_], &q = v[to_], &a = v[corners[0]], &b = v[corners[1]], &c = v[corners[2]];
-        const int side_p = orientation(a, b, c, p), side_q = orientation(a, b, c, q);
-        if (side_p * side_q > 0 || (side_p == 0 && side_q == 0)) return false;
-        const int ab = line_orientation(p, q, a, b), bc = line_orientation(p, q, b, c),
-                  ca = line_orientation(p, q, c, a);
-        return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
-    }
-
-    const Surface& surface_;
-    BuildWork::Share work_;
-    std::vector<std::atomic<bool>>& is_pierced_; // by face
-    std::span<const uint32_t> edge_;
-    uint32_t from_ = 0, to_ = 0;
-};
+// Of an edge, with all the faces that have it.
+void pierce(const Surface& surface, std::span<const uint32_t> edge, BuildWork::Share& work,
+            std::vector<std::atomic<bool>>& is_pierced)
+{
+    if (!work.spend()) return;
+    const HalfEdge first{edge[0]};
+    const auto& ends = surface.faces[first.face()].vertex;
+    const uint32_t from = ends[first.edge()], to = ends[next(first.edge())];
+    const glm::dvec3 &p = surface.vertices[from], &q = surface.vertices[to];
+    const auto visit = [&](uint32_t other) {
+        if (!work.spend()) return 0.0;
+        for (uint32_t corner : surface.faces[other].vertex)
+            if (corner == from || corner == to) return 1.0;
+        work.spend(looks_per_test);
+        if (!meets(p, q, surface.corners(other))) return 1.0;
+        for (const uint32_t code : edge) is_pierced[HalfEdge{code}.face()].store(true, std::memory_order_relaxed);
+        is_pierced[other].store(true, std::memory_order_relaxed);
+        return work.spend(edge.size()) ? 1.0 : 0.0;
+    };
+    surface.tree->segment(p, q, std::ref(visit));
+}
 
 } // namespace
 
@@ -73,9 +55,9 @@ void find_piercing(Surface& surface, const Edges& edges, MeshReport& report, Bui
     if (!work.begin("which of its triangles cut each other")) return;
     std::vector<std::atomic<bool>> is_pierced(surface.faces.size());
     in_pieces(edges.vertices(), work.threads(), [&](std::size_t begin, std::size_t end, std::size_t) {
-        EdgeAgainstFaces against(surface, work, is_pierced);
+        BuildWork::Share share(work);
         for (std::size_t low = begin; low < end && !work.over(); ++low)
-            edges.visit(low, [&](std::span<const uint32_t> edge) { against.run(edge); });
+            edges.visit(low, [&](std::span<const uint32_t> edge) { pierce(surface, edge, share, is_pierced); });
     });
     report.pierced = static_cast<std::size_t>(std::count(is_pierced.begin(), is_pierced.end(), true));
     surface.cuts_itself = report.pierced > 0;
