@@ -14,9 +14,8 @@
 namespace haptel::runtime {
 
 struct Lattice {
-    static constexpr double extent = 1099511627776.0;        // 2^40: bound of vertex coordinates
-    static constexpr double workspace = 4.0 * extent - 64.0; // bound of probe coordinates
-    static constexpr double vertex_spacing = 64.0;
+    static constexpr double extent = 0x1p40, vertex_spacing = 64;    // bound of vertex coordinates
+    static constexpr double workspace = 4 * extent - vertex_spacing; // bound of probe coordinates
     // Of the ball that a point is where faces cut each other (end_contact.h): 0.8 to 1.5 um for an object 10 cm wide.
     // Rounding makes of its normals less than a millionth.
     static constexpr double point_radius = 0x1p24;

@@ -135,7 +135,7 @@ bool crosses(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, cons
 bool earlier(const Crossing& a, const Crossing& b) noexcept
 {
     const double difference = a.fraction() - b.fraction();
-    if (std::abs(difference) > 1e-14) return difference < 0;
+    if (std::abs(difference) > filter) return difference < 0; // three roundings of each, one of both
     if (const int exact = compare_products(a.numerator, b.denominator, b.numerator, a.denominator)) return exact < 0;
     // Equal: the moved segment meets a plane earlier by normal . (e, e^2, e^3) / denominator.
     const Int128* const na[] = {&a.normal.x, &a.normal.y, &a.normal.z};

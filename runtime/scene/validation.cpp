@@ -74,7 +74,7 @@ void validate(const Vibration& vibration, double rate_hz, Findings& findings)
     vibration_fields(vibration, findings.ranges());
     if (findings.count() > before) return;
     check_rounds("frequency_hz", vibration.frequency_hz, Rounds::swings, rate_hz, findings.broken());
-    if (std::fabs(glm::length(vibration.direction) - 1) > 1e-6)
+    if (std::fabs(glm::length(vibration.direction) - 1) > orthonormal_within)
         findings.add("the `direction` of a vibration must be a unit vector, and is " +
                      shortest(glm::length(vibration.direction)) + " long");
 }

@@ -18,7 +18,7 @@ namespace haptel::runtime {
 namespace {
 
 // 1e-6 of the object's size: what six decimal digits, or single precision, cannot tell apart.
-constexpr double crack = 2097152;
+constexpr double crack = 0x1p21;
 
 // What a node that a border comes near takes, in looks: it comes from memory where there are millions.
 constexpr size_t looks_per_node = 8;
