@@ -341,7 +341,8 @@ TEST_CASE("force models, creases and the turning of normals reach the scene")
     const Folder folder;
     for (const ForceModel model :
          {ForceModel::displaced, ForceModel::paper, ForceModel::paper_unit, ForceModel::ho99, ForceModel::lateral}) {
-        const std::string named = "[servo]\nforce_model = \"" + std::string(name_of(model)) + "\"\n";
+        const std::string named =
+            "[servo]\nforce_model = \"" + std::string(force_model_names[static_cast<std::size_t>(model)]) + "\"\n";
         const Scene scene = *load(folder, named + "[[object]]\nshape = \"plane\"\n").scene;
         CHECK(scene.servo.force.model == model);
         CHECK(scene.servo.force.lateral_depth_m == 1e-3);

@@ -412,7 +412,8 @@ TEST_CASE("closed paths give no energy: long run", "[.long]")
                                 probe.kind == ProbeKind::point    ? "point"
                                 : probe.kind == ProbeKind::sphere ? "ball"
                                                                   : "stylus",
-                                1e6 * texture_m, std::string(name_of(shading)).c_str());
+                                1e6 * texture_m,
+                                std::string(force_shading_names[static_cast<std::size_t>(shading)]).c_str());
                     for (const Given* given : {&smooth, &stepping})
                         if (!given->share.empty())
                             std::printf("  %zu paths %s: |work| median %.0e p99 %.0e, given most %.0e, taken most "

@@ -136,15 +136,6 @@ dvec3 force_on(const Solid& solid, const dvec3& p, const ForceRule& rule, bool c
 
 } // namespace
 
-TEST_CASE("force models have names")
-{
-    for (const char* name : {"displaced", "paper", "paper_unit", "ho99", "lateral"}) {
-        REQUIRE(force_model_named(name));
-        CHECK(name_of(*force_model_named(name)) == name);
-    }
-    CHECK_FALSE(force_model_named("seed"));
-}
-
 TEST_CASE("force models are the published formulae")
 {
     std::mt19937 random(11);

@@ -155,7 +155,7 @@ TEST_CASE("a sound mesh is taken, however long and thin its triangles are, and t
         const SurfaceResult built = build_surface(mesh);
         CAPTURE(built.error);
         REQUIRE(built.surface);
-        CHECK(built.report.triangles_kept == mesh.triangles.size());
+        CHECK(built.surface->faces.size() == mesh.triangles.size());
         CHECK(built.report.cracks_closed == 0);
         CHECK(built.report.pierced == 0);
     }
@@ -171,8 +171,7 @@ TEST_CASE("large triangles at random, in space or nearly in a plane, are refused
         const SurfaceResult built = build_surface(large_soup(20'000, height));
         CHECK(!built.surface);
         CAPTURE(built.error);
-        CHECK((contains(built.error, " takes more than 150 million steps. Take out parts") ||
-               contains(built.error, "its triangles cut each other more than 2640000 times: take out parts")));
+        CHECK(contains(built.error, " takes more than 150 million steps. Take out parts"));
     }
 }
 

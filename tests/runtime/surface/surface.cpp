@@ -64,7 +64,6 @@ TEST_CASE("built-in shapes are closed, face outward and have the promised size")
         const Surface& s = *built.surface;
         CHECK(built.report.warning().empty()); // nothing to repair: users would ask what is wrong with the shape
         CHECK(built.report.border_edges == 0);
-        CHECK(built.report.nonmanifold_edges == 0);
         CHECK(built.report.pierced == 0);
         CHECK(int(s.vertices.size()) - int(s.faces.size()) / 2 == shape.euler);
         CHECK(signed_volume(s) > 0.98 * shape.volume);
@@ -104,14 +103,12 @@ TEST_CASE("a mesh is repaired, and says what was wrong")
     const SurfaceResult built = build_surface(mesh);
     REQUIRE(built.surface);
     CHECK(built.report.triangles_given == 20);
-    CHECK(built.report.triangles_kept == 12);
+    CHECK(built.surface->faces.size() == 12);
     CHECK(built.report.indices_out_of_range == 2);
     CHECK(built.report.not_finite == 3);
     CHECK(built.report.degenerate == 1);
     CHECK(built.report.duplicate == 2);
-    CHECK(built.report.vertices_welded == 16);
     CHECK(built.report.border_edges == 0);
-    CHECK(built.report.repaired());
     CHECK(built.report.warning() ==
           "dropped triangles: 2 with a vertex index that does not exist, 3 with a coordinate that is not finite, "
           "1 without area, 2 given twice (of 20)");
@@ -151,7 +148,7 @@ TEST_CASE("links pair every side of every edge")
                         return std::set{s->faces[face].vertex[edge], s->faces[face].vertex[next(edge)]};
                     };
                     CHECK(ends(f, e) == ends(link.face(), link.edge()));
-                    if (s->is_border(f, e)) CHECK(link == SideEdge(f, e, 1 - side));
+                    if (s->faces[f].link[e][0].face() == f) CHECK(link == SideEdge(f, e, 1 - side));
                 }
     }
 }
@@ -251,7 +248,6 @@ TEST_CASE("cracks between borders are closed, and only cracks")
     const SurfaceResult mended = build_surface(apart);
     CHECK(mended.report.cracks_closed == apart.positions_m.size() - whole.positions_m.size());
     CHECK(mended.report.border_edges == 0);
-    CHECK(mended.report.nonmanifold_edges == 0);
     CHECK(mended.surface->faces.size() == whole.triangles.size());
 
     // T-junctions: rows of 2, 4, 8 and 16 cells share 3 lines; what is left open is the outline.
@@ -300,13 +296,10 @@ TEST_CASE("sheets that cross in a vertex cut each other, those that only touch t
         const SurfaceResult built = build_surface(hard.mesh);
         CHECK(built.report.pierced > 0);
         CHECK_FALSE(built.surface->is_clean());
-        CHECK(built.report.vertices_welded >= 1);
         CHECK(built.report.border_edges == 0);
     }
     const SurfaceResult cubes = build_surface(make_touching_cubes(Touching::corners));
     CHECK(cubes.surface->is_clean());
-    CHECK(cubes.surface->vertices.size() + cubes.report.vertices_welded ==
-          make_touching_cubes(Touching::corners).positions_m.size());
 }
 
 TEST_CASE("a border's corner that stands on a closed sheet: both its sides and the sheet bound one space")
