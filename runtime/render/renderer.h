@@ -265,8 +265,8 @@ private:
     // frame; null: nobody asks.
     ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement, const Contact& contact,
                          glm::dmat3* normal_dp = nullptr) noexcept;
-    ObjectForce force_by_shaft(const Body& body, const Material& material, const Placement& placement,
-                               const Contact& contact) const noexcept;
+    ObjectForce force_of_facets(const Body& body, const Material& material, const Placement& placement,
+                                const Contact& contact) const noexcept;
     ObjectForce force_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,
                          const Contact& contact) noexcept;
     TextureSample texture_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,

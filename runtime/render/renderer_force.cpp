@@ -90,9 +90,9 @@ double Renderer::damping_n(const Body& body, double n_s_per_m, const Placement& 
     return std::max(damping, -stiffness_n_per_m * depth_m);
 }
 
-// Of the bare facets.
-Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material& material, const Placement& placement,
-                                               const Contact& contact) const noexcept
+// Without a texture: of a shaft, and of what is not deep enough to feel one.
+Renderer::ObjectForce Renderer::force_of_facets(const Body& body, const Material& material, const Placement& placement,
+                                                const Contact& contact) const noexcept
 {
     ObjectForce result;
     const double stiffness = material.stiffness_n_per_m / hand_.workspace.scale;
@@ -130,14 +130,9 @@ Foot Renderer::foot_of(Touched& touched, const Contact& contact) const noexcept
 Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement,
                                          const Contact& contact, glm::dmat3* normal_dp) noexcept
 {
-    if (contact.depth_m == 0 && scene_->servo.skips.texture) { // textures reach up to the base and no further
-        ObjectForce nothing;
-        nothing.felt_n_per_m = touched.object->material.stiffness_n_per_m / hand_.workspace.scale;
-        nothing.normal = placement.direction_to_world(contact.normal);
-        nothing.felt_dp = -nothing.normal;
-        return nothing;
-    }
-    if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
+    // Textures reach up to the base and no further.
+    if (contact.by_shaft || (contact.depth_m == 0 && scene_->servo.skips.texture))
+        return force_of_facets(body, touched.object->material, placement, contact);
     const Foot foot = foot_of(touched, contact);
     if (normal_dp) *normal_dp = foot.is_flat() ? glm::dmat3(0) : in_world(placement, turning(touched.lines, foot));
     if (foot.share == 1) return force_at(foot, body, touched, placement, contact);
