@@ -13,7 +13,6 @@ Trail::Trail(double period_s, double stiffness_n_per_m) noexcept
 glm::dvec3 Trail::update(const glm::dvec3& hand_m, double damping_n_s_per_m, uint64_t periods) noexcept
 {
     const glm::dvec3 step_m = has_last_ ? hand_m - last_m_ : glm::dvec3(0);
-    if (!has_last_) behind_m_ = glm::dvec3(0);
     last_m_ = hand_m;
     has_last_ = true;
     // What is left of the way behind after one period: the implicit step of b d/dt(point) = k (hand - point).

@@ -23,9 +23,7 @@ public:
     // Once per tick: where the hand is, the damping there, the periods since the call before. The force on the hand.
     glm::dvec3 update(const glm::dvec3& hand_m, double damping_n_s_per_m, uint64_t periods) noexcept;
     // Where the hand was is not known any more: the point starts from where it comes back.
-    void lose_hand() noexcept { has_last_ = false; }
-
-    double energy_j() const noexcept { return stiffness_n_per_m_ / 2 * glm::dot(behind_m_, behind_m_); }
+    void lose_hand() noexcept { has_last_ = false, behind_m_ = glm::dvec3(0); }
 
 private:
     double period_s_, stiffness_n_per_m_;
