@@ -13,14 +13,4 @@ enum class Degradation : uint8_t {
     no_force     // nothing, and the run ends
 };
 
-// One step on, one back; the last and the first stay.
-inline Degradation next(Degradation step)
-{
-    return step == Degradation::no_force ? step : static_cast<Degradation>(static_cast<uint8_t>(step) + 1);
-}
-inline Degradation previous(Degradation step)
-{
-    return step == Degradation::none ? step : static_cast<Degradation>(static_cast<uint8_t>(step) - 1);
-}
-
 } // namespace haptel::runtime

@@ -27,10 +27,10 @@ void OverloadPolicy::end_window() noexcept
     if (hopeless_ == hopeless_windows) {
         step_ = Degradation::no_force; // for good: the run is about to end
     } else if (bad_ == bad_windows && step_ < Degradation::no_textures) {
-        step_ = next(step_);
+        step_ = static_cast<Degradation>(static_cast<uint8_t>(step_) + 1);
         bad_ = 0;
-    } else if (good_ == good_windows && step_ < Degradation::no_force) {
-        step_ = previous(step_);
+    } else if (good_ == good_windows && step_ > Degradation::none && step_ < Degradation::no_force) {
+        step_ = static_cast<Degradation>(static_cast<uint8_t>(step_) - 1);
         good_ = 0;
     }
 }
