@@ -3,6 +3,8 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -30,5 +32,12 @@ struct ProbePose {
 
     bool operator==(const ProbePose&) const = default;
 };
+
+// How far the ends are from each other's, of the pair that is farther.
+inline double farther_m(const ProbePose& a, const ProbePose& b)
+{
+    const glm::dvec3 tip_way_m = a.tip_m - b.tip_m, tail_way_m = a.tail_m - b.tail_m;
+    return std::sqrt(std::max(glm::dot(tip_way_m, tip_way_m), glm::dot(tail_way_m, tail_way_m)));
+}
 
 } // namespace haptel::runtime

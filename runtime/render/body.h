@@ -78,9 +78,13 @@ struct Body {
     MeanFriction tip_friction, tail_friction;
     glm::dvec3 aim_m{0}; // of the tick before: how far magnets aim the tip of joined objects' proxy off the hand
 
-    ProbePose pose_of(const DevicePose& pose) const noexcept
+    ProbePose pose_of(const auto& pose) const noexcept
     {
         return {placement.to_object(pose.tip_m), placement.to_object(pose.tail_m)};
+    }
+    ProbePose in_scene(const ProbePose& pose) const noexcept
+    {
+        return {placement.to_world(pose.tip_m), placement.to_world(pose.tail_m)};
     }
     // Of one of its objects, in this tick.
     const Placement& placement_of(const SceneObject& object) const noexcept

@@ -11,11 +11,6 @@ namespace haptel::runtime {
 
 namespace {
 
-double farther_m(const glm::dvec3& tip_way_m, const glm::dvec3& tail_way_m)
-{
-    return std::sqrt(std::max(glm::dot(tip_way_m, tip_way_m), glm::dot(tail_way_m, tail_way_m)));
-}
-
 // Forces of effects have no spring. Where they are left over by a scene that is gone they fade like those of this one.
 constexpr double effect_stiffness_n_per_m = 1000;
 
@@ -236,7 +231,7 @@ double Renderer::turned_rad() const noexcept
 double Renderer::way_m(const DevicePose& pose) const noexcept
 {
     if (!last_pose_) return 0;
-    const double way = farther_m(pose.tip_m - last_pose_->tip_m, pose.tail_m - last_pose_->tail_m);
+    const double way = farther_m({pose.tip_m, pose.tail_m}, {last_pose_->tip_m, last_pose_->tail_m});
     return turn_max_rad_per_s_ > 0 && probe_.has_tail()
                ? way + std::min(turned_rad(), turn_max_rad) * glm::distance(pose.tip_m, pose.tail_m)
                : way;
@@ -263,7 +258,7 @@ bool Renderer::take_pose(Body& body, const DevicePose& pose, uint64_t periods) n
         body.velocity.update(now.tip_m, periods);
         if (probe_.has_tail()) body.tail_velocity.update(now.tail_m, periods);
         if (body.asleep) {
-            const double way = put_down ? 0.0 : farther_m(now.tip_m - before.tip_m, now.tail_m - before.tail_m);
+            const double way = put_down ? 0.0 : farther_m(now, before);
             if (lies_beyond(body, now, far_enough_m(now.tip_m, now.tail_m, way))) return false;
         }
     }

@@ -22,15 +22,6 @@ constexpr double nudge_m = 1e-3;
 constexpr double off_m[] = {0, 1e-5, 1e-4, 1e-3};
 constexpr double settled_m = off_m[1], farthest_off_m = off_m[3];
 
-// How far apart two bodies hold the probe, in the scene's space.
-double apart_m(const Body& a, const ProbePose& held_by_a, const Body& b, const ProbePose& held_by_b)
-{
-    const auto way_m = [&](const glm::dvec3& p, const glm::dvec3& q) {
-        return glm::distance(a.placement.to_world(p), b.placement.to_world(q));
-    };
-    return std::max(way_m(held_by_a.tip_m, held_by_b.tip_m), way_m(held_by_a.tail_m, held_by_b.tail_m));
-}
-
 double distance_m(const Placement& a, const Placement& b)
 {
     double sum = glm::distance(a.position_m, b.position_m);
@@ -40,10 +31,7 @@ double distance_m(const Placement& a, const Placement& b)
 
 bool share_an_object(const BodyObjects& a, const BodyObjects& b)
 {
-    const auto has = [&](uint32_t number) {
-        return std::find(b.numbers().begin(), b.numbers().end(), number) != b.numbers().end();
-    };
-    return std::any_of(a.numbers().begin(), a.numbers().end(), has);
+    return std::ranges::find_first_of(a.numbers(), b.numbers()) != a.numbers().end();
 }
 
 } // namespace
@@ -62,17 +50,13 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand,
     for (uint32_t i = 0; i < old.size(); ++i) by_surface[old[i].surface(before).get()].push_back(i);
     for (uint32_t i = 0; i < bodies_.size(); ++i) {
         const BodyObjects& now = bodies_[i].objects;
-        const auto candidates = by_surface.find(now.surface(*scene_).get());
-        if (candidates == by_surface.end()) continue;
-        auto nearest = candidates->second.end();
-        double least_m = std::numeric_limits<double>::infinity();
-        for (auto candidate = candidates->second.begin(); candidate != candidates->second.end(); ++candidate) {
-            const double away_m = distance_m(old[*candidate].placement(before), now.placement(*scene_));
-            if (away_m < least_m) least_m = away_m, nearest = candidate;
-        }
-        if (nearest == candidates->second.end()) continue;
+        std::vector<uint32_t>& candidates = by_surface[now.surface(*scene_).get()];
+        const auto nearest = std::ranges::min_element(candidates, {}, [&](uint32_t number) {
+            return distance_m(old[number].placement(before), now.placement(*scene_));
+        });
+        if (nearest == candidates.end()) continue;
         was_[i] = *nearest;
-        candidates->second.erase(nearest);
+        candidates.erase(nearest);
     }
 }
 
@@ -155,8 +139,7 @@ double Renderer::farthest_held_m(const Body& old, const Renderer& before) const 
     for (const double off : off_m) {
         const auto at = old.contact.held(hand, grown_since_m(before) + off * hand_.workspace.scale);
         if (!at) return 0;
-        farthest_m =
-            std::max({farthest_m, glm::distance(at->tip_m, hand.tip_m), glm::distance(at->tail_m, hand.tail_m)});
+        farthest_m = std::max(farthest_m, farther_m(*at, hand));
     }
     return farthest_m;
 }
@@ -193,13 +176,11 @@ void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& he
         const ProbePose old_hand = old.pose_of(*last_pose_);
         for (const double off : off_m) {
             const auto at = old.contact.held(old_hand, grown_m + off * hand_.workspace.scale);
-            const ProbePose start =
-                body.pose_of({old.placement.to_world(at->tip_m), old.placement.to_world(at->tail_m)});
-            const double way_m =
-                std::max(glm::distance(start.tip_m, hand.tip_m), glm::distance(start.tail_m, hand.tail_m));
-            if (gap_m > way_m) break;
+            const ProbePose start = body.pose_of(old.in_scene(*at));
+            if (gap_m > farther_m(start, hand)) break;
             if (come_from(start, old) == 0) continue;
-            const double from_there_m = apart_m(old, *old.contact.held(old_hand, 0), body, *body.contact.held(hand, 0));
+            const double from_there_m =
+                farther_m(old.in_scene(*old.contact.held(old_hand, 0)), body.in_scene(*body.contact.held(hand, 0)));
             if (from_there_m < least_m) least_m = from_there_m, best = start, best_old = &old;
             if (from_there_m <= settled_m * hand_.workspace.scale) break;
         }
