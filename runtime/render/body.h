@@ -29,7 +29,6 @@ struct BodyObjects {
     {
         return joined ? std::span<const uint32_t>(joined->objects) : std::span<const uint32_t>(&first, 1);
     }
-    uint32_t number(uint32_t part) const noexcept { return joined ? joined->objects[part] : first; }
     const std::shared_ptr<const Surface>& surface(const Scene& scene) const
     {
         return joined ? joined->surface : scene.objects[first].surface;

@@ -217,8 +217,7 @@ void Renderer::advance_texture(Touched& touched) noexcept
 
 void Renderer::advance_textures(const Body& body) noexcept
 {
-    if (!body.objects.joined) return advance_texture(objects_[body.objects.first]);
-    for (const uint32_t object : body.objects.joined->objects) advance_texture(objects_[object]);
+    for (const uint32_t object : body.objects.numbers()) advance_texture(objects_[object]);
 }
 
 // How far who turns within bounds has done so since the last pose.
@@ -296,8 +295,8 @@ double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose) const n
         awake_within_m = std::max(awake_within_m, effects_.awake_within_m(object));
     double gap = body.contact.gap_m(probe) - awake_within_m;
     if (body.bounded) gap = std::min(gap, gap_m(sleep_queue_.around(number), pose.tip_m, pose.tail_m));
-    const glm::dvec3 farthest = glm::abs(probe.tip_m); // in its space, where coordinates may be larger
-    return gap > std::max({near_m_, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap : 0;
+    // In its space coordinates may be larger.
+    return gap > std::max(near_m_, far_enough_m(probe.tip_m, probe.tail_m, 0)) ? gap : 0;
 }
 
 // Of a body that moves within bounds. Whether it slept does not matter: it is told from the poses of late when it is

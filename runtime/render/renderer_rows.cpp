@@ -63,7 +63,7 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
 {
     if (contacts.size() == 1) {
         const Contact& contact = parts[0].contacts[0];
-        Touched& touched = objects_[body.objects.number(parts[0].part)];
+        Touched& touched = objects_[body.objects.numbers()[parts[0].part]];
         swing_on(touched);
         feel(body, parts[0].part, true, contact, force_of(body, touched, body.placement_of(*touched.object), contact),
              pose, result, skipped);
@@ -74,7 +74,7 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
     const std::array held{held_together(body, rows, stylus ? Held::anywhere : Held::at_tip),
                           stylus ? HeldTogether() : held_together(body, rows, Held::at_tail)};
     for (Row& row : rows) {
-        Touched& touched = objects_[body.objects.number(row.part)];
+        Touched& touched = objects_[body.objects.numbers()[row.part]];
         if (row.is_first) swing_on(touched);
         feel_row(body, row);
     }
@@ -90,7 +90,7 @@ void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, st
 // is: between walls that are nearer to each other than a right angle it pushes by more.
 void Renderer::feel_row(const Body& body, Row& row) noexcept
 {
-    Touched& touched = objects_[body.objects.number(row.part)];
+    Touched& touched = objects_[body.objects.numbers()[row.part]];
     const Placement& placement = body.placement_of(*touched.object);
     const auto tell = [&](const ObjectForce& force) {
         const double stiffness = force.felt_n_per_m,
@@ -115,7 +115,7 @@ std::span<Renderer::Row> Renderer::rows_of(const Body& body, std::span<const Con
 {
     std::size_t count = 0;
     for (const PartContacts& part : parts) {
-        Touched& touched = objects_[body.objects.number(part.part)];
+        Touched& touched = objects_[body.objects.numbers()[part.part]];
         std::span<const Contact> of_part = part.contacts;
         if (of_part.size() > 1 && is_smooth(*touched.object->surface)) {
             Shaft way_m; // from the hand to the proxy
@@ -137,7 +137,7 @@ Renderer::HeldTogether Renderer::held_together(const Body& body, std::span<Row> 
 {
     HeldTogether held;
     const auto placement_of = [&](const Row& row) -> const Placement& {
-        return body.placement_of(*objects_[body.objects.number(row.part)].object);
+        return body.placement_of(*objects_[body.objects.numbers()[row.part]].object);
     };
     for (Row& row : rows) {
         const bool elsewhere = where != Held::anywhere && (row.contact.along > 0) != (where == Held::at_tail);
@@ -333,7 +333,7 @@ void Renderer::push_together(const HeldTogether& held) noexcept
 void Renderer::feel(Body& body, uint32_t part, bool is_first, const Contact& contact, const ObjectForce& force,
                     const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
 {
-    Touched& touched = objects_[body.objects.number(part)];
+    Touched& touched = objects_[body.objects.numbers()[part]];
     result.contacts += is_first;
     add_force(result, pose, contact.along, force.force_n);
     result.faults |= force.faults;
@@ -355,7 +355,7 @@ void Renderer::feel(Body& body, uint32_t part, bool is_first, const Contact& con
     result.depth_m = contact.depth_m;
     result.height_m = force.height_m;
     result.normal = force.normal;
-    result.object = body.objects.number(part) + 1;
+    result.object = body.objects.numbers()[part] + 1;
     result.binding = touched.texture.to().serial;
 }
 
