@@ -81,7 +81,7 @@ Region read_region(const toml::table& source, double rate_hz, FileMessages& mess
     double radius_m = 0;
     table.number("radius_m", radius_m, Quantity::length, region_size_m);
     glm::dvec3 sides_m(0);
-    table.three_numbers("sides_m", sides_m, Quantity::length, region_size_m);
+    table.number("sides_m", sides_m, Quantity::length, region_size_m);
     const bool ball = shape && region.shape == RegionShape::ball, box = shape && region.shape == RegionShape::box;
     if (ball != table.has("radius_m") && shape)
         messages.error(table.where(ball ? "shape" : "radius_m"), ball ? "a ball needs a radius: write `radius_m = 0.02`"
@@ -115,7 +115,7 @@ Placement read_placement(TableReader& table)
     Placement placement;
     placement_fields(placement, table.fields());
     glm::dvec3 turn_deg(0);
-    table.three_numbers("rotation_deg", turn_deg, Quantity::angle_deg, {-3600, 3600});
+    table.number("rotation_deg", turn_deg, Quantity::angle_deg, {-3600, 3600});
     placement.rotation = rotation_about_axes(turn_deg);
     return placement;
 }

@@ -9,7 +9,7 @@ MotionText read_motion(TableReader& table, const Placement& start, double rate_h
     const std::size_t errors = messages.errors();
     glm::dvec3 spin_deg_per_s(0);
     SteadyMotion::Figures figures;
-    table.three_numbers("spin_deg_per_s", spin_deg_per_s, Quantity::turning_deg_per_s, {-36'000, 36'000});
+    table.number("spin_deg_per_s", spin_deg_per_s, Quantity::turning_deg_per_s, {-36'000, 36'000});
     swing_fields(figures, table.fields());
     if (table.has("swing_m") != table.has("swing_hz"))
         messages.error(table.where(table.has("swing_m") ? "swing_m" : "swing_hz"),

@@ -32,7 +32,7 @@ void TableReader::number(std::string_view key, double& value, Quantity quantity,
     if (const toml::node* node = find(key)) value = number_in(*node, key, quantity, range).value_or(value);
 }
 
-void TableReader::three_numbers(std::string_view key, glm::dvec3& value, Quantity quantity, const Range& range)
+void TableReader::number(std::string_view key, glm::dvec3& value, Quantity quantity, const Range& range)
 {
     const toml::node* node = find(key);
     if (!node) return;

@@ -10,7 +10,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -23,15 +22,12 @@ public:
     using KeyedTable::KeyedTable;
 
     void number(std::string_view key, double& value, Quantity quantity, const Range& range);
-    void three_numbers(std::string_view key, glm::dvec3& value, Quantity quantity, const Range& range);
+    void number(std::string_view key, glm::dvec3& value, Quantity quantity, const Range& range); // three of them
     // A visitor of the fields in scene_fields.h: reads each.
     auto fields()
     {
         return [this](std::string_view key, auto& value, Quantity quantity, const Range& range) {
-            if constexpr (std::is_same_v<decltype(value), double&>)
-                number(key, value, quantity, range);
-            else
-                three_numbers(key, value, quantity, range);
+            number(key, value, quantity, range);
         };
     }
     // What tells the rule between figures that is broken where the figure is written.
