@@ -76,7 +76,8 @@ public:
     // Of a scene that does not validate (validation.h) no tick has a force, and refused() says why.
     explicit Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand = {});
 
-    // Of a scene that takes the place of `before`, at the same rate, while the hand is in it.
+    // Of a scene that takes the place of `before`, which validates, too, and is of the same rate, while the hand is in
+    // it.
     Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand, const Scene& before);
     // Between two ticks: goes on where the renderer of `before` is, which is worth nothing afterwards. What is the same
     // surface at the same place goes on touching the hand; on everything else the hand is put down from where the same

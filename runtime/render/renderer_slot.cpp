@@ -24,6 +24,8 @@ std::string RendererSlot::publish(std::shared_ptr<const Scene> scene)
 {
     if (std::string faults = validate(scene.get(), hand_); !faults.empty()) return faults;
     const std::lock_guard lock(publishers_);
+    if (scene->servo.rate_hz != newest_->servo.rate_hz)
+        return "the rate of a servo cannot change while it runs: stop it and start anew";
     // Withdrawn first: then the scene that the servo has is known for as long as the next one is made.
     const std::unique_ptr<Carrier> withdrawn(next_.exchange(nullptr, std::memory_order_acq_rel));
     if (!withdrawn) taken_ = newest_;

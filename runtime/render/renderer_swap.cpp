@@ -1,6 +1,5 @@
 // One scene in the place of another while a hand is in it.
 #include "runtime/render/renderer.h"
-#include "runtime/scene/validation.h"
 
 #include <algorithm>
 #include <limits>
@@ -39,7 +38,7 @@ bool share_an_object(const BodyObjects& a, const BodyObjects& b)
 Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand, const Scene& before)
     : Renderer(std::move(scene), hand)
 {
-    if (!refused_.empty() || !validate(&before, hand).empty()) return;
+    if (!refused_.empty()) return;
     const ProbeSettings probe = hand.probe.value_or(before.probe);
     was_.assign(bodies_.size(), none);
     if (probe.kind != probe_.kind || probe.radius_m != probe_.radius_m || probe.length_m != probe_.length_m) return;

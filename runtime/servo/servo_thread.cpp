@@ -1,6 +1,5 @@
 #include "runtime/servo/servo_thread.h"
 
-#include "runtime/scene/validation.h"
 #include "runtime/servo/real_time.h"
 
 #include <algorithm>
@@ -61,14 +60,6 @@ void ServoThread::start()
         running_.store(false, std::memory_order_release);
         throw;
     }
-}
-
-std::string ServoThread::publish(std::shared_ptr<const Scene> scene)
-{
-    if (std::string faults = validate(scene.get(), options_.hand); !faults.empty()) return faults;
-    if (scene->servo.rate_hz != rate_hz_)
-        return "the rate of a servo cannot change while it runs: stop it and start anew";
-    return scenes_.publish(std::move(scene));
 }
 
 const ServoReport& ServoThread::wait()

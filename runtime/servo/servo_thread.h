@@ -23,6 +23,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -64,7 +65,7 @@ public:
 
     // Any thread but the servo: another scene in the place of the one that is felt, from the next tick on
     // (Renderer::take_over). Returns why it is refused, or nothing.
-    std::string publish(std::shared_ptr<const Scene> scene);
+    std::string publish(std::shared_ptr<const Scene> scene) { return scenes_.publish(std::move(scene)); }
     // Frees the scenes that were replaced; publish does so too.
     void collect() { scenes_.collect(); }
 
