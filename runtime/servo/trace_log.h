@@ -62,9 +62,4 @@ private:
 // each tick what a record has by itself (a tail: the tip's place).
 std::string trace_log_bytes(const TraceOrigin& origin, std::span<const TickRecord> records);
 
-// Whether a file begins as one, if only by its first bytes.
-bool is_trace_log(const std::filesystem::path& file);
-
-TraceResult read_trace_log(const std::filesystem::path& file);
-
 } // namespace haptel::runtime

@@ -1,6 +1,6 @@
 #include "input/regular_file.h"
 #include "runtime/servo/tick_columns.h"
-#include "runtime/servo/trace_log.h"
+#include "runtime/servo/trace_csv.h"
 #include "runtime/servo/trace_log_layout.h"
 
 #include <algorithm>
@@ -31,6 +31,9 @@ class LogReader {
 public:
     explicit LogReader(const std::filesystem::path& path) : file_(path, trace_bytes_max), name_(path.string()) {}
 
+    // Whether it begins as one, if only by its first bytes.
+    bool is_one() { return is_more() && log_magic.starts_with(ahead_.substr(0, log_magic.size())); }
+
     TraceResult read()
     {
         result_.origin.emplace();
@@ -52,15 +55,17 @@ private:
                     "): nothing of it can be trusted");
     }
 
+    bool is_more()
+    {
+        if (ahead_.empty()) ahead_ = {block_.data(), file_.read(block_.data(), block_.size())};
+        return !ahead_.empty();
+    }
+
     // As many bytes as there are, up to `count`.
     std::size_t fill(char* to, std::size_t count)
     {
         std::size_t filled = 0;
-        while (filled < count) {
-            if (ahead_.empty()) {
-                ahead_ = {block_.data(), file_.read(block_.data(), block_.size())};
-                if (ahead_.empty()) break;
-            }
+        while (filled < count && is_more()) {
             const std::size_t taken = ahead_.copy(to + filled, count - filled);
             ahead_.remove_prefix(taken);
             filled += taken;
@@ -196,22 +201,10 @@ private:
 
 } // namespace
 
-bool is_trace_log(const std::filesystem::path& file)
+TraceResult read_trace(const std::filesystem::path& file)
 {
-    input::RegularFile opened(file, trace_bytes_max);
-    std::array<char, log_magic.size()> begin;
-    std::size_t count = 0;
-    while (count < begin.size()) {
-        const std::size_t got = opened.read(begin.data() + count, begin.size() - count);
-        if (got == 0) break;
-        count += got;
-    }
-    return count > 0 && log_magic.starts_with({begin.data(), count});
-}
-
-TraceResult read_trace_log(const std::filesystem::path& file)
-{
-    return LogReader(file).read();
+    LogReader log(file);
+    return log.is_one() ? log.read() : read_trace_csv(file);
 }
 
 } // namespace haptel::runtime
