@@ -1,5 +1,7 @@
 #include "runtime/servo/trace_origin.h"
 
+#include "runtime/scene/scene_fields.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -47,13 +49,6 @@ void read_number(std::string_view text, Number& into)
     if (error == std::errc() && end == text.data() + text.size()) into = value;
 }
 
-template <typename Number>
-std::string shortest_text(Number value)
-{
-    std::array<char, 32> text;
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 bool read_sum(std::string_view text, input::Checksum& sum)
 {
     const auto half = [&](std::size_t at, uint64_t& into) {
@@ -80,13 +75,13 @@ std::string to_text(const TraceOrigin& origin)
     };
     say("haptel", in_one_line(origin.haptel));
     say("device", in_one_line(origin.device.name));
-    say("force_max_n", shortest_text(origin.device.force_max_n));
-    say("stiffness_max_n_per_m", shortest_text(origin.device.stiffness_max_n_per_m));
-    say("workspace_radius_m", shortest_text(origin.device.workspace_radius_m));
-    say("position_resolution_m", shortest_text(origin.device.position_resolution_m));
+    say("force_max_n", shortest(origin.device.force_max_n));
+    say("stiffness_max_n_per_m", shortest(origin.device.stiffness_max_n_per_m));
+    say("workspace_radius_m", shortest(origin.device.workspace_radius_m));
+    say("position_resolution_m", shortest(origin.device.position_resolution_m));
     if (origin.device.slopes_only) say("slopes_only", "1");
-    say("hand", shortest_text(origin.hand));
-    say("rate_hz", shortest_text(origin.rate_hz));
+    say("hand", std::to_string(origin.hand));
+    say("rate_hz", shortest(origin.rate_hz));
     say("clock", in_one_line(origin.clock));
     for (const TracedFile& file : origin.files)
         say(in_one_line(file.kind), input::to_text(file.sum) + " " + in_one_line(file.path));
