@@ -3,6 +3,7 @@
 #include "runtime/surface/build/joined_surfaces.h"
 
 #include <array>
+#include <bit>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -13,6 +14,8 @@ namespace haptel::runtime {
 
 namespace {
 
+using Place = std::array<double, 12>; // the numbers of a placement
+
 // Of the same surfaces in the same places.
 std::string joined_key(const Scene& scene, const std::vector<ObjectAtRest>& joinable,
                        const std::vector<uint32_t>& numbers)
@@ -20,12 +23,9 @@ std::string joined_key(const Scene& scene, const std::vector<ObjectAtRest>& join
     std::ostringstream key;
     key << std::hexfloat << "joined";
     for (uint32_t i : numbers) {
-        const Placement& placement = scene.objects[joinable[i].number].placement;
-        key << '\n' << joinable[i].surface_key;
-        for (int k = 0; k < 3; ++k) {
-            key << '\n' << placement.position_m[k];
-            for (int j = 0; j < 3; ++j) key << ' ' << placement.rotation[k][j];
-        }
+        key << '\n' << joinable[i].surface_key << '\n';
+        for (const double number : std::bit_cast<Place>(scene.objects[joinable[i].number].placement))
+            key << number << ' ';
     }
     return key.str();
 }
@@ -34,14 +34,11 @@ std::string joined_key(const Scene& scene, const std::vector<ObjectAtRest>& join
 
 void warn_of_doubles(const Scene& scene, const std::vector<ObjectAtRest>& at_rest, FileMessages& messages)
 {
-    std::map<std::pair<const Surface*, std::array<double, 12>>, uint32_t> first_there;
+    std::map<std::pair<const Surface*, Place>, uint32_t> first_there;
     for (const ObjectAtRest& one : at_rest) {
         const SceneObject& object = scene.objects[one.number];
-        const glm::dmat3& r = object.placement.rotation;
-        const glm::dvec3& p = object.placement.position_m;
-        const std::array<double, 12> place{r[0].x, r[0].y, r[0].z, r[1].x, r[1].y, r[1].z,
-                                           r[2].x, r[2].y, r[2].z, p.x,    p.y,    p.z};
-        const auto [first, is_first] = first_there.try_emplace({object.surface.get(), place}, one.number);
+        const auto [first, is_first] =
+            first_there.try_emplace({object.surface.get(), std::bit_cast<Place>(object.placement)}, one.number);
         if (is_first) continue;
         messages.warning(one.at, "objects " + std::to_string(first->second + 1) + " and " +
                                      std::to_string(one.number + 1) + " are both `" + object.name +
