@@ -29,8 +29,7 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
 {
     if (text.object.name.empty()) text.object.name = text.mesh.empty() ? text.shape : text.mesh;
     const std::filesystem::path file = text.mesh.empty() ? "" : (folder / text.mesh).lexically_normal();
-    const std::string key = text.surface_key = SurfaceCache::key(
-        file, text.shape, text.size_m, text.own_crease ? std::optional(text.crease_deg) : std::nullopt);
+    const std::string key = text.surface_key = SurfaceCache::key(file, text.shape, text.size_m, text.crease_deg);
     if (surfaces && !text.own_mesh) text.object.surface = surfaces->find(key);
     if (text.object.surface) return;
     const std::string named = "mesh `" + text.object.name + "`";
@@ -39,11 +38,10 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
     if (text.mesh.empty()) {
         Mesh mesh = text.own_mesh ? *text.own_mesh : make_shape(text.shape).value_or(Mesh{});
         if (text.size_m > 0) scale_to_size(mesh, text.size_m);
-        SurfaceResult shape = build_surface(mesh, text.crease_deg, &of_mesh);
+        SurfaceResult shape = build_surface(mesh, text.crease_deg.value_or(default_crease_deg), &of_mesh);
         built = {std::move(shape.surface), shape.report, std::move(shape.error), {}};
     } else {
-        built = surface_of_mesh_file(file, text.size_m, text.own_crease ? std::optional(text.crease_deg) : std::nullopt,
-                                     of_mesh);
+        built = surface_of_mesh_file(file, text.size_m, text.crease_deg, of_mesh);
     }
     if (!built.error.empty()) {
         messages.error(text.mesh_at, named + ": " + built.error);
@@ -123,11 +121,11 @@ LoadedScene assemble_scene(SceneText text, const std::filesystem::path& folder, 
                            FileMessages& messages)
 {
     LoadedScene loaded;
-    using Geometry = std::tuple<std::string, std::string, const Mesh*, double, double, bool>;
+    using Geometry = std::tuple<std::string, std::string, const Mesh*, double, std::optional<double>>;
     std::map<Geometry, std::vector<ObjectText>::iterator> first_of;
     for (auto object = text.objects.begin(); object != text.objects.end(); ++object) {
-        const Geometry geometry{object->mesh,   object->shape,      object->own_mesh.get(),
-                                object->size_m, object->crease_deg, object->own_crease};
+        const Geometry geometry{object->mesh, object->shape, object->own_mesh.get(), object->size_m,
+                                object->crease_deg};
         const auto same = first_of.try_emplace(geometry, object).first->second;
         if (same == object) {
             if (!object->mesh.empty()) loaded.meshes.push_back((folder / object->mesh).lexically_normal());

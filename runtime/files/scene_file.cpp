@@ -67,9 +67,7 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     if (!table.has("mesh")) text.size_m = default_shape_size_m;
     table.number("size_m", text.size_m, Quantity::length, {0, 1000, true});
 
-    table.number("crease_deg", text.crease_deg, Quantity::angle_deg, {0, 180});
-    text.own_crease = table.has("crease_deg");
-
+    if (table.has("crease_deg")) table.number("crease_deg", text.crease_deg.emplace(), Quantity::angle_deg, {0, 180});
     text.object.placement = read_placement(table);
     text.motion = read_motion(table, text.object.placement, rate_hz, messages);
     text.object.motion = text.motion.motion;

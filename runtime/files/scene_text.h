@@ -9,6 +9,7 @@
 #include "runtime/surface/surface.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,9 @@ struct ObjectText {
     // One of them. A program's own mesh is as it is.
     std::string mesh, shape;
     std::shared_ptr<const Mesh> own_mesh = {};
-    double size_m = 0; // 0: as it is
-    double crease_deg = default_crease_deg;
-    bool own_crease = false; // it was written: the mesh's smoothing groups do not count
-    bool joined = true;      // with what it meets
+    double size_m = 0;                     // 0: as it is
+    std::optional<double> crease_deg = {}; // if it was written: then the mesh's smoothing groups do not count
+    bool joined = true;                    // with what it meets
     std::string surface_key;
     SceneObject object;
     MotionText motion;
