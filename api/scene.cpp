@@ -200,7 +200,7 @@ Scene SceneBuilder::finish(const SceneSettings& settings)
     runtime::SceneText text;
     text.probe = probe_of(settings.probe);
     text.servo = servo_of(settings);
-    text.devices.emplace_back().probe = text.probe;
+    text.devices.emplace_back().hand.probe = text.probe;
     for (const auto& object : state_->objects) text.objects.push_back(std::move(object->text));
     check(text, messages);
     const auto is_file = [](const runtime::ObjectText& object) { return !object.mesh.empty(); };

@@ -34,7 +34,7 @@ std::vector<runtime::LoadedHand> open_for(const std::shared_ptr<const runtime::S
     texts[0].request.stroke = source.stroke.name;
     texts[0].request.speed_m_per_s = source.stroke.speed_m_per_s;
     texts[0].request.press_n = source.stroke.press_n;
-    texts[0].probe = scene->probe;
+    texts[0].hand.probe = scene->probe;
     const std::vector<toml::source_region> stiffness_at(scene->objects.size());
     return runtime::open_hands(
         texts, scene, stiffness_at, [&source](const runtime::DeviceRequest& request) { return open(source, request); },

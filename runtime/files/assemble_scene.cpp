@@ -104,7 +104,7 @@ void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices,
     };
     const std::size_t errors = messages.errors();
     for (const DeviceText& device : devices)
-        if (messages.errors() == errors) check_probe_size(device.probe, text.object, told_at(text.mesh_at));
+        if (messages.errors() == errors) check_probe_size(*device.hand.probe, text.object, told_at(text.mesh_at));
     check_effects_reach(text.object, told_at(text.reach_at));
 }
 
@@ -170,7 +170,7 @@ LoadedScene assemble_scene(SceneText text, const std::filesystem::path& folder, 
     }
 
     // All that a scene can break is told above, where it is written; a renderer asks for this, too.
-    if (const std::string faults = validate(scene.get(), {.probe = text.devices.front().probe}); !faults.empty())
+    if (const std::string faults = validate(scene.get(), {.probe = text.devices.front().hand.probe}); !faults.empty())
         messages.error(faults);
     std::vector<toml::source_region> stiffness_at;
     for (const ObjectText& object : text.objects) stiffness_at.push_back(object.stiffness_at);
@@ -179,7 +179,7 @@ LoadedScene assemble_scene(SceneText text, const std::filesystem::path& folder, 
         loaded.hands.clear();
         return loaded;
     }
-    for (const DeviceText& device : text.devices) loaded.probes.push_back(device.probe);
+    for (const DeviceText& device : text.devices) loaded.probes.push_back(*device.hand.probe);
     loaded.scene = std::move(scene);
     return loaded;
 }

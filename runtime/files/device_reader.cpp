@@ -47,8 +47,7 @@ DeviceText read_device(const toml::table& source, const std::string& name, Devic
     find_stylus_length(source, device);
     table.whole_number("seed", device.request.seed);
     if (const toml::table* probe = table.table("probe", "{ kind = \"point\" }"))
-        device.probe = read_probe(*probe, "`probe`", messages);
-    device.hand.probe = device.probe; // what the device was opened with, whatever scene comes later
+        device.hand.probe = read_probe(*probe, "`probe`", messages);
     if (const toml::table* workspace = table.table("workspace", "{ scale = 2 }"))
         device.hand.workspace = read_workspace(*workspace, "`workspace`", messages);
     table.report_unknown_keys();
@@ -86,7 +85,7 @@ std::vector<DeviceText> read_devices(const toml::table& root, const ProbeSetting
     DeviceText common;
     common.request.name = "simulated:premium";
     common.request.stroke = "circles";
-    common.probe = probe;
+    common.hand.probe = probe;
     find_stylus_length(root, common);
     common.hand.workspace = read_workspace(table_named(root, "workspace", messages), "[workspace]", messages);
 

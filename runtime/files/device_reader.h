@@ -13,8 +13,7 @@ namespace haptel::runtime {
 
 struct DeviceText {
     DeviceRequest request; // without what the scene's geometry says
-    HandSettings hand;
-    ProbeSettings probe; // of this hand
+    HandSettings hand;     // with a probe: what the device is opened with, whatever scene comes later
     // Where the parts of the request are written, or what they belong to; by DeviceKey.
     std::array<toml::source_region, 6> at;
     const toml::source_region& where(DeviceKey key) const { return at[static_cast<std::size_t>(key)]; }

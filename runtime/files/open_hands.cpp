@@ -33,10 +33,11 @@ void describe_object(DeviceText& device, const std::shared_ptr<const Scene>& sce
 {
     const SceneObject& object = scene->objects.front();
     const Workspace& workspace = device.hand.workspace;
+    const ProbeSettings& probe = *device.hand.probe;
     DeviceRequest& request = device.request;
     request.rate_hz = scene->servo.rate_hz;
-    request.stylus_length_m = device.probe.has_tail() ? device.probe.length_m / workspace.scale : 0;
-    request.gripper = device.probe.kind == ProbeKind::gripper;
+    request.stylus_length_m = probe.has_tail() ? probe.length_m / workspace.scale : 0;
+    request.gripper = probe.kind == ProbeKind::gripper;
     request.box_minimum_m = glm::dvec3(infinity);
     request.box_maximum_m = glm::dvec3(-infinity);
     for (const glm::dvec3& vertex : object.surface->vertices) {
@@ -46,7 +47,7 @@ void describe_object(DeviceText& device, const std::shared_ptr<const Scene>& sce
     }
     const glm::dvec3 sides = request.box_maximum_m - request.box_minimum_m;
     const double margin_m = 0.01 * std::max({sides.x, sides.y, sides.z});
-    const double radius_m = device.probe.kind == ProbeKind::sphere ? device.probe.radius_m : 0;
+    const double radius_m = probe.kind == ProbeKind::sphere ? probe.radius_m : 0;
     request.surface_below = [scene, workspace, radius_m, above_m = request.box_maximum_m.z + margin_m,
                              below_m = request.box_minimum_m.z - margin_m](double x_m, double y_m) {
         return surface_below(scene->objects.front(), workspace, {x_m, y_m, above_m}, {x_m, y_m, below_m}, radius_m);
@@ -93,7 +94,7 @@ void complete(LoadedHand& hand, const DeviceText& device, const Scene& scene, Fi
         hand.settings.slopes_only = info.slopes_only;
         return;
     }
-    if (device.probe.kind == ProbeKind::gripper)
+    if (device.request.gripper)
         messages.error(device.where(DeviceKey::stylus_length),
                        "`" + info.name +
                            "` has too few axes for a gripper: write `kind = \"point\"`, `\"sphere\"` or "
