@@ -89,19 +89,11 @@ std::vector<DeviceText> read_devices(const toml::table& root, const ProbeSetting
     find_stylus_length(root, common);
     common.hand.workspace = read_workspace(table_named(root, "workspace", messages), "[workspace]", messages);
 
-    const toml::node* node = root.get("device");
-    const toml::array* list = node ? node->as_array() : nullptr;
-    if (!list || !list->is_array_of_tables())
+    if (!root["device"].is_array_of_tables())
         return {read_device(table_named(root, "device", messages), "[device]", common, folder, messages)};
     std::vector<DeviceText> devices;
-    if (list->size() > devices_max) {
-        messages.error((*list)[devices_max].source(), "a scene may have " + std::to_string(devices_max) +
-                                                          " devices, each with a thread of its own, and this one has " +
-                                                          std::to_string(list->size()) + ": leave some out");
-        return devices;
-    }
-    for (const toml::node& device : *list)
-        devices.push_back(read_device(*device.as_table(), "[[device]]", common, folder, messages));
+    for (const toml::table* device : tables_of(root, "device", devices_max, ", each with a thread", messages))
+        devices.push_back(read_device(*device, "[[device]]", common, folder, messages));
     return devices;
 }
 

@@ -152,17 +152,8 @@ const toml::source_region& farthest_reach_at(const toml::table& object, const Ob
 std::vector<Region> read_regions(const toml::table& root, double rate_hz, FileMessages& messages)
 {
     std::vector<Region> regions;
-    const toml::node* node = root.get("region");
-    if (!node) return regions;
-    const toml::array* list = node->as_array();
-    if (!list || !list->is_array_of_tables())
-        messages.error(node->source(), "expected `[[region]]` in double brackets: a scene may hold several regions");
-    else if (list->size() > regions_max)
-        messages.error((*list)[regions_max].source(), "a scene may have " + std::to_string(regions_max) +
-                                                          " regions, each looked at in every tick, and this one has " +
-                                                          std::to_string(list->size()) + ": leave some out");
-    else
-        for (const toml::node& region : *list) regions.push_back(read_region(*region.as_table(), rate_hz, messages));
+    for (const toml::table* region : tables_of(root, "region", regions_max, ", each looked at in every tick", messages))
+        regions.push_back(read_region(*region, rate_hz, messages));
     return regions;
 }
 

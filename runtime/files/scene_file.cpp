@@ -97,19 +97,10 @@ SceneText read_scene(const toml::table& root, const std::filesystem::path& folde
     for (const char* name : {"probe", "servo", "workspace", "device", "object", "region"}) (void)top.has(name);
     top.report_unknown_keys();
 
-    const toml::node* objects = root.get("object");
-    const toml::array* list = objects ? objects->as_array() : nullptr;
-    if (!objects)
+    if (!root.contains("object"))
         messages.error("a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`");
-    else if (!list || !list->is_array_of_tables())
-        messages.error(objects->source(), "expected `[[object]]` in double brackets: a scene may hold several objects");
-    else if (list->size() > objects_max)
-        messages.error((*list)[objects_max].source(), "a scene may hold " + std::to_string(objects_max) +
-                                                          " objects, and this one has " + std::to_string(list->size()) +
-                                                          ": leave some out");
-    else
-        for (const toml::node& object : *list)
-            text.objects.push_back(read_object(*object.as_table(), text.servo.rate_hz, messages));
+    for (const toml::table* object : tables_of(root, "object", objects_max, "", messages))
+        text.objects.push_back(read_object(*object, text.servo.rate_hz, messages));
     return text;
 }
 

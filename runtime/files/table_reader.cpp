@@ -87,4 +87,24 @@ std::vector<std::pair<std::string, std::string>> TableReader::values_as_written(
     return values;
 }
 
+std::vector<const toml::table*> tables_of(const toml::table& root, std::string_view name, std::size_t most,
+                                          std::string_view each, FileMessages& messages)
+{
+    std::vector<const toml::table*> tables;
+    const toml::node* node = root.get(name);
+    if (!node) return tables;
+    const toml::array* list = node->as_array();
+    const std::string one(name);
+    if (!list || !list->is_array_of_tables())
+        messages.error(node->source(),
+                       "expected `[[" + one + "]]` in double brackets: a scene may hold several " + one + "s");
+    else if (list->size() > most)
+        messages.error((*list)[most].source(), "a scene may hold " + std::to_string(most) + " " + one + "s" +
+                                                   std::string(each) + ", and this one has " +
+                                                   std::to_string(list->size()) + ": leave some out");
+    else
+        for (const toml::node& table : *list) tables.push_back(table.as_table());
+    return tables;
+}
+
 } // namespace haptel::runtime

@@ -39,4 +39,9 @@ private:
     std::optional<double> number_in(const toml::node& node, std::string_view key, Quantity, const Range&);
 };
 
+// Those of `[[name]]`; none where something else is written, or more than `most`, which is told. `each`: what each
+// costs.
+std::vector<const toml::table*> tables_of(const toml::table& root, std::string_view name, std::size_t most,
+                                          std::string_view each, FileMessages& messages);
+
 } // namespace haptel::runtime
