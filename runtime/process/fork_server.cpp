@@ -62,10 +62,7 @@ bool send_request(int socket, Request request)
     rights->cmsg_type = SCM_RIGHTS;
     rights->cmsg_len = CMSG_LEN(sizeof request.ends);
     std::memcpy(CMSG_DATA(rights), request.ends.data(), sizeof request.ends);
-    ssize_t sent;
-    while ((sent = sendmsg(socket, &message.header, MSG_NOSIGNAL)) < 0 && errno == EINTR) {
-    }
-    return sent >= 0;
+    return TEMP_FAILURE_RETRY(sendmsg(socket, &message.header, MSG_NOSIGNAL)) >= 0;
 }
 
 // Nothing: the program has ended.
@@ -74,9 +71,7 @@ std::optional<Request> receive_request(int socket)
     Request request;
     request.text.resize(request_bytes_max);
     Message message(&request.main, request.text.data(), request.text.size());
-    ssize_t received;
-    while ((received = recvmsg(socket, &message.header, 0)) < 0 && errno == EINTR) {
-    }
+    const ssize_t received = TEMP_FAILURE_RETRY(recvmsg(socket, &message.header, 0));
     const cmsghdr* rights = CMSG_FIRSTHDR(&message.header);
     if (received < static_cast<ssize_t>(sizeof request.main) || !rights) return std::nullopt;
     std::memcpy(request.ends.data(), CMSG_DATA(rights), sizeof request.ends);
@@ -129,11 +124,9 @@ int strip(int kept)
     if (process > 0) {
         const auto ended = static_cast<int>(syscall(SYS_pidfd_open, process, 0)); // -1: only its own limits end it
         pollfd watched[] = {{ended, POLLIN, 0}, {ending_pipe, 0, 0}}; // of a pipe that nobody reads: POLLERR
-        while (ended >= 0 && poll(watched, 2, -1) < 0 && errno == EINTR) {
-        }
+        if (ended >= 0) TEMP_FAILURE_RETRY(poll(watched, 2, -1));
         if (watched[1].revents != 0) kill(process, SIGKILL);
-        while (waitpid(process, &ending.status, 0) < 0 && errno == EINTR) {
-        }
+        TEMP_FAILURE_RETRY(waitpid(process, &ending.status, 0));
     }
     send_bytes(ending_pipe, &ending, sizeof ending);
     _exit(EXIT_SUCCESS);
@@ -216,8 +209,7 @@ private:
         close(ends[1]);
         int status = 0;
         if (between > 0) {
-            while (waitpid(between, &status, 0) < 0 && errno == EINTR) {
-            }
+            TEMP_FAILURE_RETRY(waitpid(between, &status, 0));
             fork_error = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
         }
         if (fork_error != 0) {
@@ -246,8 +238,7 @@ Server& server()
 bool send_bytes(int pipe, const void* bytes, std::size_t size)
 {
     for (const char* at = static_cast<const char*>(bytes); size > 0;) {
-        const ssize_t sent = write(pipe, at, size);
-        if (sent < 0 && errno == EINTR) continue;
+        const ssize_t sent = TEMP_FAILURE_RETRY(write(pipe, at, size));
         if (sent <= 0) return false;
         at += sent;
         size -= static_cast<std::size_t>(sent);
@@ -258,8 +249,7 @@ bool send_bytes(int pipe, const void* bytes, std::size_t size)
 bool receive_bytes(int pipe, void* bytes, std::size_t size)
 {
     for (char* at = static_cast<char*>(bytes); size > 0;) {
-        const ssize_t received = read(pipe, at, size);
-        if (received < 0 && errno == EINTR) continue;
+        const ssize_t received = TEMP_FAILURE_RETRY(read(pipe, at, size));
         if (received <= 0) return false;
         at += received;
         size -= static_cast<std::size_t>(received);
@@ -294,21 +284,14 @@ ForkedProcess::ForkedProcess(ForkedMain main, const std::string& request)
         error_ = "the request is too long";
         return;
     }
-    int answer[2], ending[2];
-    if (pipe2(answer, O_CLOEXEC) != 0) {
+    int answer[2] = {-1, -1}, ending[2] = {-1, -1};
+    if (pipe2(answer, O_CLOEXEC) != 0 || pipe2(ending, O_CLOEXEC) != 0)
         error_ = std::string("no pipe could be opened: ") + std::strerror(errno);
-        return;
-    }
-    answer_ = answer[0];
+    answer_ = answer[0], ending_ = ending[0];
     fcntl(answer[1], F_SETPIPE_SZ, 1 << 20); // fewer turns between the two, where it is granted
-    if (pipe2(ending, O_CLOEXEC) != 0) {
-        error_ = std::string("no pipe could be opened: ") + std::strerror(errno);
-    } else {
-        ending_ = ending[0];
-        server().send({{main, nullptr}, request, {answer[1], ending[1]}}, error_);
-        close(ending[1]);
-    }
-    close(answer[1]);
+    if (error_.empty()) server().send({{main, nullptr}, request, {answer[1], ending[1]}}, error_);
+    for (const int end : {answer[1], ending[1]})
+        if (end >= 0) close(end);
 }
 
 ForkedProcess::~ForkedProcess()
