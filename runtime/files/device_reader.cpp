@@ -92,7 +92,8 @@ std::vector<DeviceText> read_devices(const toml::table& root, const ProbeSetting
     if (!root["device"].is_array_of_tables())
         return {read_device(table_named(root, "device", messages), "[device]", common, folder, messages)};
     std::vector<DeviceText> devices;
-    for (const toml::table* device : tables_of(root, "device", devices_max, ", each with a thread", messages))
+    for (const toml::table* device :
+         tables_of(root, "device", devices_max, ", each with a thread of its own", messages))
         devices.push_back(read_device(*device, "[[device]]", common, folder, messages));
     return devices;
 }

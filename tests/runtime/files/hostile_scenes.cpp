@@ -108,17 +108,17 @@ TEST_CASE("more devices, objects or regions than any scene has are refused, the 
     };
     CHECK(diagnostics_of(box_object + repeated("[[device]]\nname = \"simulated:premium\"\n", 5000), resolve_flat,
                          count) ==
-          "scene.toml:131:1: error: a scene may have 64 devices, each with a thread of its own, and this one has 5000: "
+          "scene.toml:131:1: error: a scene may hold 64 devices, each with a thread of its own, and this one has 5000: "
           "leave some out\n");
     CHECK(opened == 0);
     CHECK_FALSE(contains(
         diagnostics_of(box_object + repeated("[[device]]\nname = \"simulated:premium\"\n", 64), resolve_flat, count),
-        "may have"));
+        "may hold"));
     CHECK(opened == 64);
     CHECK(contains(diagnostics_of(repeated(box_object, 20'001)),
                    "a scene may hold 20000 objects, and this one has 20001"));
     CHECK(contains(diagnostics_of(box_object + repeated("[[region]]\nshape = \"space\"\n", 10'001)),
-                   "a scene may have 10000 regions"));
+                   "a scene may hold 10000 regions"));
 }
 
 TEST_CASE("loading tells what it does and to which mesh, and ends at whatever it was told to end")
