@@ -63,7 +63,6 @@ public:
     const BoundingSphere& around(uint32_t object) const noexcept { return spheres_[object]; }
     // In rising order, so that what is summed over them does not depend on who slept when.
     const std::vector<uint32_t>& awake() const noexcept { return awake_; }
-    std::size_t asleep() const noexcept { return object_count_ - awake_.size(); }
     // Balls that were compared with the hand since the start, those of groups included.
     uint64_t compared() const noexcept { return compared_; }
 
