@@ -42,13 +42,6 @@ std::optional<std::string> key_text(const std::filesystem::path& file, double si
 using Words = std::vector<std::string>;
 constexpr std::size_t words_of_reading = 2;
 
-std::string text_of(const Words& words)
-{
-    std::string text;
-    for (const std::string& word : words) (text += word) += '\0';
-    return text;
-}
-
 Words words_in(const std::string& text)
 {
     Words words;
@@ -111,16 +104,19 @@ MeshSurface surface_of_mesh_file(const std::filesystem::path& file, double size_
     const std::chrono::duration<double> took = Clock::now() - begin;
     if (built.surface && named && took.count() >= keep_from_s) try {
             read.mesh = {};
-            Words words{read.warning, all_off ? "off" : ""};
+            std::string words;
+            const auto keep = [&](const std::string& word) { (words += word) += '\0'; };
+            keep(read.warning);
+            keep(all_off ? "off" : "");
             bool changes = false; // what is read is summed later: not of a file that changed meanwhile
             for (const std::string& other : words_in(read.other_files)) {
                 std::error_code none;
                 changes |= std::filesystem::last_write_time(file.parent_path() / other, none) >= began && !none;
-                words.push_back(other);
-                words.push_back(sum_of_file(file.parent_path() / other));
+                keep(other);
+                keep(sum_of_file(file.parent_path() / other));
             }
             std::string room;
-            const KeptSurface made{built.surface, built.report, text_of(words)};
+            const KeptSurface made{built.surface, built.report, std::move(words)};
             if (!changes && key_text(file, size_m, crease_deg) == named)
                 kept.store(to_text(key), pieces_of_file(made, key, loading.threads, room));
         } catch (const std::exception&) {
