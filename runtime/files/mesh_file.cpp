@@ -196,9 +196,7 @@ const std::string no_triangle = "the file holds no triangle: points or lines onl
 
 MeshFileResult failed(std::string why)
 {
-    MeshFileResult result;
-    result.error = std::move(why);
-    return result;
+    return {{}, std::move(why)};
 }
 
 // Why in the words of others, or close to them.

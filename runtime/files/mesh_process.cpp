@@ -52,23 +52,21 @@ bool receive_values(int pipe, Values& values)
     return true;
 }
 
-bool send_result(int pipe, const MeshFileResult& result)
+// Both ways.
+template <class Result, class Pass>
+bool pass_each(Result& result, Pass&& pass)
 {
-    const Mesh& mesh = result.mesh;
-    return send_values(pipe, result.error) && send_values(pipe, result.warning) &&
-           send_values(pipe, mesh.positions_m) && send_values(pipe, mesh.triangles) && send_values(pipe, mesh.uv) &&
-           send_values(pipe, mesh.smoothing_groups) && send_values(pipe, result.other_files);
+    auto& mesh = result.mesh;
+    return pass(result.error) && pass(result.warning) && pass(mesh.positions_m) && pass(mesh.triangles) &&
+           pass(mesh.uv) && pass(mesh.smoothing_groups) && pass(result.other_files);
 }
 
 bool receive_result(int pipe, MeshFileResult& result)
 {
-    Mesh& mesh = result.mesh;
+    const Mesh& mesh = result.mesh;
     const auto fits = [](std::size_t count, std::size_t all) { return count == 0 || count == all; };
-    return receive_values(pipe, result.error) && receive_values(pipe, result.warning) &&
-           receive_values(pipe, mesh.positions_m) && receive_values(pipe, mesh.triangles) &&
-           receive_values(pipe, mesh.uv) && receive_values(pipe, mesh.smoothing_groups) &&
-           receive_values(pipe, result.other_files) && fits(mesh.uv.size(), mesh.positions_m.size()) &&
-           fits(mesh.smoothing_groups.size(), mesh.triangles.size());
+    return pass_each(result, [&](auto& values) { return receive_values(pipe, values); }) &&
+           fits(mesh.uv.size(), mesh.positions_m.size()) && fits(mesh.smoothing_groups.size(), mesh.triangles.size());
 }
 
 void lower(__rlimit_resource_t what, rlim_t most)
@@ -111,7 +109,8 @@ try {
     Job job;
     std::memcpy(&job, request.data(), sizeof job);
     limit(job.limits);
-    _exit(send_result(pipe, job.read(request.substr(sizeof job))) ? exit_sent : exit_failed);
+    const MeshFileResult result = job.read(request.substr(sizeof job));
+    _exit(pass_each(result, [&](const auto& values) { return send_values(pipe, values); }) ? exit_sent : exit_failed);
 } catch (const std::bad_alloc&) {
     _exit(exit_memory);
 } catch (...) {
