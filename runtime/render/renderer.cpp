@@ -14,6 +14,20 @@ namespace {
 // Forces of effects have no spring. Where they are left over by a scene that is gone they fade like those of this one.
 constexpr double effect_stiffness_n_per_m = 1000;
 
+std::vector<Body> make_bodies(const Scene& scene, const ProbeSettings& probe)
+{
+    std::vector<Body> all;
+    for (const BodyObjects& objects : bodies_of(scene)) all.emplace_back(scene, objects, probe);
+    return all;
+}
+
+std::vector<BoundingSphere> bounding_spheres(const Scene& scene, const std::vector<Body>& bodies, double probe_radius_m)
+{
+    std::vector<BoundingSphere> all;
+    for (const Body& body : bodies) all.push_back(bounding_sphere_of(scene, body.objects, probe_radius_m));
+    return all;
+}
+
 } // namespace
 
 Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
@@ -41,21 +55,6 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     }
     objects_.reserve(scene_->objects.size());
     for (const SceneObject& object : scene_->objects) objects_.push_back({&object, TextureReader(*object.texture)});
-}
-
-std::vector<Body> Renderer::make_bodies(const Scene& scene, const ProbeSettings& probe)
-{
-    std::vector<Body> all;
-    for (const BodyObjects& objects : bodies_of(scene)) all.emplace_back(scene, objects, probe);
-    return all;
-}
-
-std::vector<BoundingSphere> Renderer::bounding_spheres(const Scene& scene, const std::vector<Body>& bodies,
-                                                       double probe_radius_m)
-{
-    std::vector<BoundingSphere> all;
-    for (const Body& body : bodies) all.push_back(bounding_sphere_of(scene, body.objects, probe_radius_m));
-    return all;
 }
 
 TickResult Renderer::tick(const DevicePose& pose) noexcept

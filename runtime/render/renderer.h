@@ -222,9 +222,6 @@ private:
         bool operator==(const OnHand&) const = default;
     };
 
-    static std::vector<Body> make_bodies(const Scene& scene, const ProbeSettings& probe);
-    static std::vector<BoundingSphere> bounding_spheres(const Scene& scene, const std::vector<Body>& bodies,
-                                                        double probe_radius_m);
     TickResult tick_in_scene(DevicePose pose) noexcept;
     void fade_shares(Degradation degradation, uint64_t periods) noexcept;
     void add_force(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <numeric>
 #include <sys/stat.h>
 #include <type_traits>
 #include <unistd.h>
@@ -27,7 +28,7 @@ constexpr std::size_t waiting_max = 1 << 18; // bytes
 Columns all_columns()
 {
     Columns columns(tick_column_count);
-    for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = i;
+    std::iota(columns.begin(), columns.end(), std::size_t{0});
     return columns;
 }
 
@@ -156,7 +157,7 @@ std::string trace_log_bytes(const TraceOrigin& origin, std::span<const TickRecor
 {
     constexpr std::array<std::string_view, 4> of_the_machine = {"compute_ns", "woken_ns", "wake_late_ns", "binding"};
     std::array<bool, tick_column_count> tells{};
-    for (std::size_t i = 0; i < log_columns_required.size(); ++i) tells[*tick_column(log_columns_required[i])] = true;
+    for (const std::string_view name : log_columns_required) tells[*tick_column(name)] = true;
     for (const TickRecord& given : records) {
         TickRecord record = given, plain;
         plain.tail_m = record.tip_m;
