@@ -53,25 +53,10 @@ std::optional<MotionBounds> bounds_of(const Scene& scene, const BodyObjects& obj
 
 } // namespace
 
-BoundingSphere bounding_sphere_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m)
-{
-    const BoundingSphere box = box_of(*objects.surface(scene));
-    const double felt_m = felt_within_m(scene, objects, probe_radius_m);
-    if (!objects.motion(scene))
-        return {.centre_m = objects.placement(scene).to_world(box.centre_m),
-                .radius_m = (box.radius_m + felt_m) * (1 + radius_slack)};
-    const auto bounds = bounds_of(scene, objects);
-    if (!bounds) return {.radius_m = std::numeric_limits<double>::infinity()};
-    const double radius_m = bounds->radius_m + felt_m;
-    // r more, so that r = sway + turn * (radius + r + radius): the hand is farther away than it seems to move at the
-    // edge of the ball.
-    const double seems_m = (bounds->sway_m + 2 * turn_max_rad * radius_m) / (1 - turn_max_rad);
-    return {bounds->centre_m, (radius_m + seems_m) * (1 + radius_slack), bounds->turn_rad_per_s > 0};
-}
-
 Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe)
     : objects(of)
     , motion(of.motion(scene))
+    , bounded(bounds_of(scene, of))
     , around(box_of(*of.surface(scene)))
     , contact(probe, of.surface(scene), scene.servo.skips.free_space, scene.servo.rate_hz)
     , placement(of.placement(scene))
@@ -79,9 +64,18 @@ Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe
     , tail_velocity(1 / scene.servo.rate_hz)
 {
     around.radius_m = (around.radius_m + felt_within_m(scene, of, probe.radius_m)) * (1 + radius_slack);
-    const auto bounds = bounds_of(scene, of);
-    bounded = bounds.has_value();
-    if (bounded) turn_rad_per_s = bounds->turn_rad_per_s;
+}
+
+BoundingSphere bounding_sphere_of(const Scene& scene, const Body& body, double probe_radius_m)
+{
+    if (!body.motion) return {body.placement.to_world(body.around.centre_m), body.around.radius_m};
+    if (!body.bounded) return {.radius_m = std::numeric_limits<double>::infinity()};
+    const MotionBounds& bounds = *body.bounded;
+    const double radius_m = bounds.radius_m + felt_within_m(scene, body.objects, probe_radius_m);
+    // r more, so that r = sway + turn * (radius + r + radius): the hand is farther away than it seems to move at the
+    // edge of the ball.
+    const double seems_m = (bounds.sway_m + 2 * turn_max_rad * radius_m) / (1 - turn_max_rad);
+    return {bounds.centre_m, (radius_m + seems_m) * (1 + radius_slack), bounds.turn_rad_per_s > 0};
 }
 
 void Body::move(double time_s) noexcept

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,10 +42,6 @@ struct BodyObjects {
 // Each object in one of them, in the order of their first ones.
 std::vector<BodyObjects> bodies_of(const Scene& scene);
 
-// The sphere, in the scene's space, outside of which nothing of a body is felt, effects included, wherever its motion
-// takes it. The radius is infinite if its motion has no known bounds.
-BoundingSphere bounding_sphere_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m);
-
 // The friction at one end of the probe that touches several objects: the mean of their coefficients, weighted by the
 // force of each, and of their grains, weighted by what friction holds there, so that it changes without a step when the
 // probe slides through a crease from one to the other.
@@ -63,11 +60,10 @@ struct Body {
     const Motion* motion; // null: at rest
     // Moves, within bounds: may be asked where it was, and not at all for a while (sleep_queue.h). Its velocities are
     // known only from when it is touched to when the hand is out of its bounding sphere.
-    bool bounded = false;
-    double turn_rad_per_s = 0; // of those bounds
-    BoundingSphere around;     // in its own space, within which it is felt
-    ProbeContact contact;      // in the body's space
-    Placement placement;       // of this tick
+    std::optional<MotionBounds> bounded;
+    BoundingSphere around; // in its own space, within which it is felt
+    ProbeContact contact;  // in the body's space
+    Placement placement;   // of this tick
     // Of tip and tail, in the space of a body that moves; else not kept.
     HandVelocity velocity, tail_velocity;
     // Too far from the hand to be touched (sleep_queue.h): its contact was last updated when it fell asleep, and so was
@@ -93,6 +89,10 @@ struct Body {
     // Of a body that moves: to where it is now.
     void move(double time_s) noexcept;
 };
+
+// The sphere, in the scene's space, outside of which nothing of a body is felt, effects included, wherever its motion
+// takes it. The radius is infinite if its motion has no known bounds.
+BoundingSphere bounding_sphere_of(const Scene& scene, const Body& body, double probe_radius_m);
 
 // Whether nothing of the body can be felt by a probe at most `away_m` metres from this pose, which is in the body's
 // space. Allows for the rounding of large coordinates.

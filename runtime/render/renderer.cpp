@@ -24,7 +24,7 @@ std::vector<Body> make_bodies(const Scene& scene, const ProbeSettings& probe)
 std::vector<BoundingSphere> bounding_spheres(const Scene& scene, const std::vector<Body>& bodies, double probe_radius_m)
 {
     std::vector<BoundingSphere> all;
-    for (const Body& body : bodies) all.push_back(bounding_sphere_of(scene, body.objects, probe_radius_m));
+    for (const Body& body : bodies) all.push_back(bounding_sphere_of(scene, body, probe_radius_m));
     return all;
 }
 
@@ -50,8 +50,9 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     if (hand_.slopes_only) force_rule_.model = ForceModel::lateral;
     for (Body& body : bodies_) {
         body.asleep = scene_->servo.skips.objects;
-        turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.turn_rad_per_s);
-        if (body.bounded && !history_) history_.emplace(period_s_);
+        if (!body.bounded) continue;
+        turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.bounded->turn_rad_per_s);
+        if (!history_) history_.emplace(period_s_);
     }
     objects_.reserve(scene_->objects.size());
     for (const SceneObject& object : scene_->objects) objects_.push_back({&object, TextureReader(*object.texture)});
