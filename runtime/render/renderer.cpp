@@ -223,7 +223,7 @@ void Renderer::advance_textures(const Body& body) noexcept
 // How far who turns within bounds has done so since the last pose.
 double Renderer::turned_rad() const noexcept
 {
-    return turn_max_rad_per_s_ > 0 ? turn_max_rad_per_s_ * (time_s() - time_s(last_pose_period_)) : 0;
+    return turn_max_rad_per_s_ * (time_s() - time_s(last_pose_period_));
 }
 
 // Of the hand since the last pose, with how much longer it looks to who turns: a stylus far away sweeps along.
@@ -231,9 +231,8 @@ double Renderer::way_m(const DevicePose& pose) const noexcept
 {
     if (!last_pose_) return 0;
     const double way = farther_m({pose.tip_m, pose.tail_m}, {last_pose_->tip_m, last_pose_->tail_m});
-    return turn_max_rad_per_s_ > 0 && probe_.has_tail()
-               ? way + std::min(turned_rad(), turn_max_rad) * glm::distance(pose.tip_m, pose.tail_m)
-               : way;
+    if (turn_max_rad_per_s_ == 0) return way;
+    return way + std::min(turned_rad(), turn_max_rad) * glm::distance(pose.tip_m, pose.tail_m);
 }
 
 // Where the probe was in the tick before, in the body's space as it was then.

@@ -97,13 +97,12 @@ void Renderer::limit_and_send(TickResult& result, double lever_m, double left_wo
     held_j *= shares_.force;
     result.force_n = limited(force_n, force_limit_n_);
     result.grip_force_n = std::clamp(grip_n, -force_limit_n_, force_limit_n_);
-    if (torque_n_m != glm::dvec3(0)) {
-        const double length_n = glm::length(force_n);
-        result.torque_n_m = length_n > force_limit_n_ ? force_limit_n_ / length_n * torque_n_m : torque_n_m;
-        const double sent = glm::length(result.torque_n_m), most = force_limit_n_ * lever_m;
-        if (sent > most) result.force_n *= most / sent, result.torque_n_m *= most / sent;
-    }
     const auto share = [](double of, double all) { return of < all ? of / all : 1.0; };
+    if (torque_n_m != glm::dvec3(0)) {
+        result.torque_n_m = share(force_limit_n_, glm::length(force_n)) * torque_n_m;
+        const double by_lever = share(force_limit_n_ * lever_m, glm::length(result.torque_n_m));
+        result.force_n *= by_lever, result.torque_n_m *= by_lever;
+    }
     const double of_force = result.force_n == force_n ? 1.0 : share(glm::length(result.force_n), glm::length(force_n));
     const double limit = std::min(of_force, share(std::abs(result.grip_force_n), std::abs(grip_n)));
     sent_.n = result.force_n;
