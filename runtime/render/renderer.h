@@ -13,6 +13,8 @@
 #include "runtime/hand/hand_velocity.h"
 #include "runtime/hand/haptic_device.h"
 #include "runtime/render/body.h"
+#include "runtime/render/held_together.h"
+#include "runtime/render/object_force.h"
 #include "runtime/render/skipped_stages.h"
 #include "runtime/render/sleep_queue.h"
 #include "runtime/render/smooth_rows.h"
@@ -124,90 +126,6 @@ private:
         uint32_t count = 0;
         double within_m = 0; // so far off the hand, at most, do all that there are hold it
     };
-    struct ObjectForce {
-        glm::dvec3 force_n{0}; // world frame
-        double height_m = 0;
-        glm::dvec3 normal{0}; // of the base surface there, as shaded; world frame
-        // What the texture leaves of the friction coefficients: its own scales, times the share of the depth below the
-        // base surface that is also below the texture.
-        double static_share = 0, dynamic_share = 0;
-        Grain grain;                      // of the friction, object space
-        glm::dvec3 spring_n{0};           // of force_n: by the spring of the surface
-        double felt_n_per_m = 0;          // of that spring
-        double felt_m = 0;                // where it does not push: how deep the hand is below what is felt, at most 0,
-        glm::dvec3 felt_dp{0};            // and the gradient of that by the hand's place, world frame
-        double surface_j = 0, held_j = 0; // in the spring of the surface, and with that of friction
-        uint32_t faults = 0;
-        double swing_hz = 0;                         // of a vibration that the texture asks for
-        bool textured = false, band_limited = false; // a texture was evaluated, with less detail than it has
-        bool unmapped = false;                       // coordinates or the turning of normals were left out
-
-        void mix_in(const ObjectForce& other, double share, const glm::dvec3& share_dp) noexcept;
-    };
-    // One of several contacts.
-    struct Row {
-        uint32_t part;
-        bool is_first;    // of the part
-        Contact contact;  // in its object's space
-        double below_m;   // of what is touched there, the hand: less than 0 above it, in a narrow groove
-        double share = 1; // of that, held by this contact: of several nearly in one plane a part, else all
-        // Of what is held together with others, in the world frame; `_dp`: gradients by the places of both ends.
-        glm::dvec3 normal{0}; // unit, of the facet
-        Shaft direction{};    // along that, of a push
-        Shaft depth_dp{};     // of contact.depth_m
-        double held = 0;      // 0 .. 1, in how far places on the others stay where they are along it:
-        double still_m = 0;   // by so much of its depth
-        Shaft still_dp{};
-        double off_m = 0; // how far the hand is from where this one does not hold
-        Shaft off_dp{};
-        double felt_m = 0; // how deep the hand would be below what is felt, at its place on this row
-        glm::dvec3 felt_dp{0};
-        glm::dvec3 felt_normal{0}; // unit, of what is felt there,
-        glm::dmat3 normal_dp{0};   // 1/m: and how it turns with the place
-        Shaft felt_direction{};
-        double raised_m = 0; // along it: how far the proxy is below what is felt, mostly less than 0
-        Shaft raised_dp{};
-        double eased_m = 0; // that is less by so much while contact begins
-        Shaft eased_dp{};
-        Shaft at_ends_n{}; // felt there besides `force`
-        ObjectForce force{};
-
-        // Along what another one touches, of the place where it does: how that goes by a push of this one.
-        glm::dvec3 way_of(const Row& other) const
-        {
-            return tangential(direction.at(other.contact.along), other.normal);
-        }
-        Contact whole() const // as if it held all of it
-        {
-            Contact all = contact;
-            all.depth_m /= share;
-            all.lag_m /= share;
-            return all;
-        }
-    };
-    // What rows do not hold of a way, (1 + sum of gain d d^T)^-1 of it, d their directions: by rank-one updates.
-    class Unheld {
-    public:
-        void add(const Shaft& direction, double gain) noexcept;
-        Shaft of(const Shaft& way) const noexcept;
-
-    private:
-        struct Update { // left as it is until it is told
-            glm::dvec3 tip, tail;
-            double weight;
-        };
-        std::array<Update, CreaseRows::rows_most> updates_;
-        std::size_t count_ = 0;
-    };
-    // At one end of the probe; of a stylus anywhere.
-    struct HeldTogether {
-        std::array<Row*, CreaseRows::rows_most> row;
-        std::size_t count = 0;
-        Shaft way_m; // from the hand to the proxy
-
-        HeldTogether() noexcept {} // of the arrays nothing is set to 0
-        std::span<Row* const> rows() const { return {row.data(), count}; }
-    };
     struct Skipped { // in this tick
         bool query = true, texture = true, octaves = false, mapping = false;
     };
@@ -230,16 +148,7 @@ private:
                          const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
     std::span<Row> rows_of(const Body& body, std::span<const Contact> contacts,
                            std::span<const PartContacts> parts) noexcept;
-    enum class Held : uint8_t { at_tip, at_tail, anywhere };
-    HeldTogether held_together(const Body& body, std::span<Row> rows, Held where) const noexcept;
-    static Shaft felt_by(const Row& row, const glm::dvec3& by_place, const HeldTogether& held) noexcept;
     void feel_row(const Body& body, Row& row) noexcept;
-    static void raise(Row& row, const HeldTogether& held) noexcept;
-    static ShaftRow plane_of(const Row& row, const Shaft& way_m) noexcept;
-    static Shaft below_dp(const Row& row, const Shaft& way_m, const Shaft& at_m, const HeldTogether& held) noexcept;
-    static void ease_in(const HeldTogether& held) noexcept;
-    static void push_together(const HeldTogether& held) noexcept;
-    static void hold_still(HeldTogether& held) noexcept;
     void feel(Body& body, uint32_t part, bool is_first, const Contact& contact, const ObjectForce& force,
               const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept;
     double grown_since_m(const Renderer& before) const noexcept; // a ball in place of another

@@ -27,6 +27,11 @@ glm::dmat3 in_world(const Placement& placement, const glm::dmat3& by_place)
     return placement.rotation * by_place * glm::transpose(placement.rotation);
 }
 
+Shaft in_object(const Placement& placement, const Shaft& way)
+{
+    return {placement.direction_to_object(way.tip), placement.direction_to_object(way.tail)};
+}
+
 } // namespace
 
 // On the probe at the share `along` of the way from its tip to its tail.
@@ -91,8 +96,8 @@ double Renderer::damping_n(const Body& body, double n_s_per_m, const Placement& 
 }
 
 // Without a texture: of a shaft, and of what is not deep enough to feel one.
-Renderer::ObjectForce Renderer::force_of_facets(const Body& body, const Material& material, const Placement& placement,
-                                                const Contact& contact) const noexcept
+ObjectForce Renderer::force_of_facets(const Body& body, const Material& material, const Placement& placement,
+                                      const Contact& contact) const noexcept
 {
     ObjectForce result;
     const double stiffness = material.stiffness_n_per_m / hand_.workspace.scale;
@@ -127,8 +132,8 @@ Foot Renderer::foot_of(Touched& touched, const Contact& contact) const noexcept
     return foot;
 }
 
-Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement,
-                                         const Contact& contact, glm::dmat3* normal_dp) noexcept
+ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement, const Contact& contact,
+                               glm::dmat3* normal_dp) noexcept
 {
     // Textures reach up to the base and no further.
     if (contact.by_shaft || (contact.depth_m == 0 && scene_->servo.skips.texture))
@@ -145,7 +150,7 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
 }
 
 // Of the springs, minus the gradient of what is held by both in these shares.
-void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const glm::dvec3& share_dp) noexcept
+void ObjectForce::mix_in(const ObjectForce& other, double share, const glm::dvec3& share_dp) noexcept
 {
     force_n = glm::mix(force_n, other.force_n, share) - (other.surface_j - surface_j) * share_dp;
     spring_n = glm::mix(spring_n, other.spring_n, share) - (other.surface_j - surface_j) * share_dp;
@@ -185,8 +190,8 @@ TextureSample Renderer::texture_at(const Foot& foot, const Body& body, Touched& 
     return sample_texture(touched.texture, at, touched.sample);
 }
 
-Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Touched& touched,
-                                         const Placement& placement, const Contact& contact) noexcept
+ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,
+                               const Contact& contact) noexcept
 {
     const SceneObject& object = *touched.object;
     const Surface& surface = *object.surface;
@@ -241,6 +246,113 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     result.force_n =
         result.spring_n + placement.direction_to_world(felt_stiffness * contact.lag_m + along_n * foot.normal);
     return result;
+}
+
+void Renderer::render_contacts(Body& body, std::span<const Contact> contacts, std::span<const PartContacts> parts,
+                               const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
+{
+    if (contacts.size() == 1) {
+        const Contact& contact = parts[0].contacts[0];
+        Touched& touched = objects_[body.objects.numbers()[parts[0].part]];
+        swing_on(touched);
+        feel(body, parts[0].part, true, contact, force_of(body, touched, body.placement_of(*touched.object), contact),
+             pose, result, skipped);
+        return;
+    }
+    using At = HeldTogether::At;
+    const std::span<Row> rows = rows_of(body, contacts, parts);
+    const bool stylus = probe_.kind == ProbeKind::stylus; // of the others each end by itself
+    const std::array held{HeldTogether(rows, stylus ? At::both : At::tip),
+                          stylus ? HeldTogether() : HeldTogether(rows, At::tail)};
+    for (Row& row : rows) {
+        Touched& touched = objects_[body.objects.numbers()[row.part]];
+        if (row.is_first) swing_on(touched);
+        feel_row(body, row);
+    }
+    for (const HeldTogether& end : held) end.push();
+    for (const Row& row : rows) { // what presses most first, of a stylus its tip
+        feel(body, row.part, row.is_first, row.contact, row.force, pose, result, skipped);
+        add_force(result, pose, 0, row.at_ends_n.tip);
+        add_force(result, pose, 1, row.at_ends_n.tail);
+    }
+}
+
+// Friction and damping as if the row held all of the hand, times its share, and what is felt there by how deep the hand
+// is: between walls that are nearer to each other than a right angle it pushes by more.
+void Renderer::feel_row(const Body& body, Row& row) noexcept
+{
+    Touched& touched = objects_[body.objects.numbers()[row.part]];
+    const auto tell = [&](const ObjectForce& force) {
+        const double stiffness = force.felt_n_per_m,
+                     pushed_m = stiffness > 0 ? std::sqrt(2 * force.surface_j / stiffness) : 0.0;
+        row.felt_m = pushed_m > 0 ? pushed_m : force.felt_m;
+        row.felt_dp = pushed_m > 0 ? -force.spring_n / (stiffness * pushed_m) : force.felt_dp;
+        row.felt_normal = is_smooth(*touched.object->surface) ? force.normal : row.normal;
+        row.felt_direction = Shaft::pushed_at(row.contact.along, row.felt_normal);
+    };
+    row.force = force_of(body, touched, *row.placement, row.whole(), &row.normal_dp);
+    tell(row.force);
+    row.force.force_n *= row.share;
+    row.force.held_j *= row.share;
+    if (row.below_m >= row.contact.depth_m) return;
+    Contact there = row.contact;
+    there.depth_m = row.below_m;
+    tell(force_of(body, touched, *row.placement, there, &row.normal_dp));
+}
+
+std::span<Row> Renderer::rows_of(const Body& body, std::span<const Contact> contacts,
+                                 std::span<const PartContacts> parts) noexcept
+{
+    std::size_t count = 0;
+    for (const PartContacts& part : parts) {
+        Touched& touched = objects_[body.objects.numbers()[part.part]];
+        const Placement& placement = body.placement_of(*touched.object);
+        std::span<const Contact> of_part = part.contacts;
+        if (of_part.size() > 1 && is_smooth(*touched.object->surface)) {
+            Shaft way_m; // from the hand to the proxy
+            for (const Contact& contact : contacts)
+                way_m += contact.depth_m * Shaft::pushed_at(contact.along, contact.normal);
+            if (body.objects.joined) way_m = in_object(placement, way_m);
+            of_part = smooth_rows_.of(*touched.object->surface, of_part, way_m, touched.lines);
+        }
+        for (const Contact& contact : of_part.first(std::min(of_part.size(), rows_.size() - count)))
+            rows_[count++] = {.part = part.part,
+                              .is_first = &contact == of_part.data(),
+                              .placement = &placement,
+                              .contact = contact,
+                              .below_m = contact.depth_m};
+    }
+    return {rows_.data(), count};
+}
+
+// Adds it to what the hand feels.
+void Renderer::feel(Body& body, uint32_t part, bool is_first, const Contact& contact, const ObjectForce& force,
+                    const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
+{
+    Touched& touched = objects_[body.objects.numbers()[part]];
+    result.contacts += is_first;
+    add_force(result, pose, contact.along, force.force_n);
+    result.faults |= force.faults;
+    held_j_ += force.held_j;
+    skipped.texture = skipped.texture && !force.textured;
+    skipped.octaves = skipped.octaves || force.band_limited;
+    skipped.mapping = skipped.mapping || force.unmapped;
+    if (!contact.by_shaft) {
+        const Material& material = touched.object->material;
+        MeanFriction& end = contact.along == 0 ? body.tip_friction : body.tail_friction;
+        const bool turns = body.objects.joined && force.grain.is_there;
+        end.add({material.static_friction * force.static_share, material.dynamic_friction * force.dynamic_share,
+                 turns ? turned(force.grain, body.placement_of(*touched.object).rotation) : force.grain},
+                material.stiffness_n_per_m * contact.depth_m);
+    }
+    if (!is_first) return;
+    touched.swing_hz = force.swing_hz;
+    if (result.contacts > 1 && contact.depth_m <= result.depth_m) return;
+    result.depth_m = contact.depth_m;
+    result.height_m = force.height_m;
+    result.normal = force.normal;
+    result.object = body.objects.numbers()[part] + 1;
+    result.binding = touched.texture.to().serial;
 }
 
 } // namespace haptel::runtime
