@@ -26,9 +26,6 @@ constexpr double rises_within = 6;
 // Beyond a border or a crease the lines are those of the facet before it, up to so many times its height.
 constexpr double beyond_most = 0.5;
 
-// Of unit normals: facets beside an edge that differ by no more are one to the place on it.
-constexpr double one_plane = 1e-6;
-
 // Above the centres of curvature the foot is mostly nearer to the flat one than half an edge.
 constexpr int facets_most = 8;
 
@@ -203,7 +200,7 @@ Foot flat_foot(const Surface& surface, const Contact& contact) noexcept
     foot.turned_per_m2 = dvec3(0);
     foot.line = dvec3(0);
     foot.across = 1;
-    if (glm::distance(contact.normal, contact.facet_normal) > one_plane) find_hold(surface, contact, foot);
+    if (glm::distance(contact.normal, contact.facet_normal) > one_place) find_hold(surface, contact, foot);
     foot.share = 1;
     foot.share_dp = dvec3(0);
     return foot;

@@ -28,6 +28,9 @@
 
 namespace haptel::runtime {
 
+// Of unit normals, and of an edge: what differs by no more, as found from two sides, is one.
+inline constexpr double one_place = 1e-6;
+
 // In the space of the object. Made by the functions below, which fill it: it is made in each tick.
 struct Foot {
     uint32_t face, side;

@@ -20,8 +20,7 @@ uint64_t units(double m)
 }
 
 // Coordinates are rounded, and of what turns a part of the gap is left over: nobody sleeps too long.
-constexpr double early = 1 - 1e-6, early_if_turning = 0.9;
-static_assert(early_if_turning + turn_max_rad < 1);
+constexpr double early = 1 - 1e-6, early_if_turning = 1 - 2 * turn_max_rad;
 
 // The ball around two is rounded up.
 constexpr double sphere_rounding = 1e-12;

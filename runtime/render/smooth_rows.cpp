@@ -7,18 +7,12 @@ namespace haptel::runtime {
 
 namespace {
 
-// Of an edge, and of a normal: feet that are nearer to each other are one, found from two sides. At one place of a
-// crease the normals differ.
-constexpr double same_foot = 1e-6;
-
-// Sine of the angle between what is one direction.
-constexpr double one_direction = 1e-6;
-
+// At one place of a crease the normals differ.
 bool are_one(const Foot& a, const Foot& b)
 {
     return a.share > 0 && b.share > 0 && !a.is_flat() && !b.is_flat() &&
-           glm::distance(a.normal, b.normal) < same_foot &&
-           glm::distance(a.at_m, b.at_m) < same_foot * glm::length(a.line_m[0]);
+           glm::distance(a.normal, b.normal) < one_place &&
+           glm::distance(a.at_m, b.at_m) < one_place * glm::length(a.line_m[0]);
 }
 
 // The sum of both, held off the same place.
@@ -34,10 +28,10 @@ void add(Contact& row, const Contact& contact)
     row.depth_m = depth_m;
     row.lag_m += contact.lag_m;
     row.proxy_m = centre_m - row.radius_m * row.normal;
-    if (row.rolls < 0 && sine < one_direction) return; // as one facet
+    if (row.rolls < 0 && sine < one_place) return; // as one facet
     if (row.rolls < 0)
         row.groove = groove / sine;
-    else if (std::fabs(glm::dot(row.groove, contact.normal)) > one_direction)
+    else if (std::fabs(glm::dot(row.groove, contact.normal)) > one_place)
         row.groove = glm::dvec3(0); // a third one ends it
     row.rolls = row.radius_m / depth_m;
 }

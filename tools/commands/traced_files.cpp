@@ -4,6 +4,7 @@
 #include "jit/picture/image_file.h"
 #include "jit/texture/resolver.h"
 #include "jit/texture/source_file.h"
+#include "runtime/files/mesh_file.h"
 
 #include <map>
 #include <optional>
@@ -14,11 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uintmax_t traced_bytes_max = std::uintmax_t{1} << 30; // of a mesh, the largest
-
 std::optional<input::Checksum> sum_of(const fs::path& file)
 {
-    const input::FileBytes read = input::read_regular_file(file, traced_bytes_max);
+    const input::FileBytes read = input::read_regular_file(file, runtime::mesh_bytes_max);
     if (read.refused.refusal != input::Refusal::none) return std::nullopt;
     return input::checksum(read.bytes);
 }
