@@ -151,7 +151,7 @@ void HeldTogether::raise(Row& row) const noexcept
     row.raised_dp = felt_by(row, row.felt_normal + row.felt_dp - left_m * row.normal_dp);
 }
 
-// The gradient of how far `at_m` is below that plane, as that place stays.
+// The gradient of how far `at_m` is below the plane of a row (plane_of), as that place stays.
 Shaft HeldTogether::below_dp(const Row& row, const Shaft& way_m, const Shaft& at_m) const noexcept
 {
     const double along = row.contact.along;

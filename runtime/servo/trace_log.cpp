@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <numeric>
 #include <sys/stat.h>
 #include <type_traits>
 #include <unistd.h>
@@ -28,7 +27,7 @@ constexpr std::size_t waiting_max = 1 << 18; // bytes
 Columns all_columns()
 {
     Columns columns(tick_column_count);
-    std::iota(columns.begin(), columns.end(), std::size_t{0});
+    for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = i;
     return columns;
 }
 

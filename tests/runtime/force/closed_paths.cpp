@@ -240,7 +240,7 @@ TEST_CASE("across the hole of a ring a stylus on its tip and its shaft gives les
 
 namespace {
 
-// A ball on both flanks, which hold it together (runtime/render/renderer_rows.cpp).
+// A ball on both flanks, which hold it together (runtime/render/held_together.h).
 void check_in_valley(double height_m, uint32_t cells, double allowed)
 {
     Mesh valley = plane_mesh(0.04, cells);
