@@ -11,8 +11,7 @@ namespace {
 
 ContactWork difference(const ContactWork& after, const ContactWork& before)
 {
-    return {after.queries - before.queries, after.triangles - before.triangles, after.steps - before.steps,
-            after.read_ahead - before.read_ahead};
+    return {after - before, after.read_ahead - before.read_ahead};
 }
 
 // The tail of a stylus is so far out that its shaft stands on the ball.

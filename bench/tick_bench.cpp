@@ -66,11 +66,11 @@ private:
         found_ += hit.has_value();
         before_ = look.hand_m;
         touching_ += look.felt.contacts > 0;
-        const uint64_t stepped = look.work.triangles + look.work.steps;
+        const uint64_t stepped = look.work.triangles_tested + look.work.walk_steps;
         ahead_ns_.push_back(look.ahead_ns);
         tree_ns_.push_back(
             std::max(0.0, std::chrono::duration<double, std::nano>(walked - begin).count() - look.clock_ns));
-        queries_.push_back(static_cast<double>(look.work.queries));
+        queries_.push_back(static_cast<double>(look.work.sweeps));
         stepped_.push_back(static_cast<double>(stepped));
         touched_.push_back(static_cast<double>(stepped + look.work.read_ahead));
     }

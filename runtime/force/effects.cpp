@@ -59,17 +59,14 @@ void Effects::begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) no
 }
 
 glm::dvec3 Effects::pull(std::size_t object, const Placement& placement, const glm::dvec3& held_out_m,
-                         double stiffness_n_per_m) noexcept
+                         double stiffness_n_per_m, CollisionCount& count) noexcept
 {
     Near& near = *objects_[object];
     near.distance_m = std::numeric_limits<double>::infinity();
     const double reach_m = near.effects.reach_m();
     if (reach_m == 0) return glm::dvec3(0);
     const glm::dvec3 tip_m = placement.to_object(tip_m_ + held_out_m);
-    const uint64_t queries = near.distance.queries(), triangles = near.distance.triangles();
-    const auto nearest = near.distance.within(tip_m, reach_m + probe_radius_m_);
-    queries_ += near.distance.queries() - queries;
-    triangles_ += near.distance.triangles() - triangles;
+    const auto nearest = near.distance.within(tip_m, reach_m + probe_radius_m_, count);
     if (!nearest) return glm::dvec3(0);
     near.distance_m = std::max(0.0, nearest->distance_m - probe_radius_m_);
     if (!near.effects.magnet.acts() || near.distance_m == 0) return glm::dvec3(0);

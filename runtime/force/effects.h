@@ -41,16 +41,12 @@ public:
     // stiffness of what holds it: there the contact of joined objects aims in the next tick. So a magnet presses the
     // proxy onto what lies between, and one potential rules.
     glm::dvec3 pull(std::size_t object, const Placement& placement, const glm::dvec3& held_out_m,
-                    double stiffness_n_per_m) noexcept;
+                    double stiffness_n_per_m, CollisionCount& count) noexcept;
     void update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept;
     glm::dvec3 force_n() noexcept;
     static glm::dvec3 held_out_m(std::span<const Contact> contacts) noexcept; // of the tip
 
     void lose_hand() noexcept { trail_.lose_hand(); }
-
-    // Queries of the objects' trees and triangles that these delivered, since the start.
-    uint64_t queries() const noexcept { return queries_; }
-    uint64_t triangles() const noexcept { return triangles_; }
 
 private:
     void vibrate(const Vibration& vibration, VibrationLevel& level, double share, const Placement& placement) noexcept;
@@ -68,7 +64,6 @@ private:
     std::vector<std::unique_ptr<Near>> objects_; // null: without effects
     std::vector<VibrationLevel> region_levels_;
     Trail trail_;
-    uint64_t queries_ = 0, triangles_ = 0;
 
     // Of this tick.
     glm::dvec3 tip_m_{0}, sum_n_{0};

@@ -137,10 +137,10 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
         work_.objects += body.objects.numbers().size();
         ProbePose probe = body.pose_of(pose);
         if (effects_act && body.objects.joined) probe.tip_m += shares_.effects * body.aim_m;
-        const uint64_t queries = work_.queries;
+        const uint64_t sweeps = work_.sweeps;
         std::span<const Contact> contacts =
             update_contact(body, probe, {body.tip_friction.mean, body.tail_friction.mean});
-        skipped.query = skipped.query && contacts.empty() && work_.queries == queries;
+        skipped.query = skipped.query && contacts.empty() && work_.sweeps == sweeps;
         if (!body.contact.settled()) result.faults |= fault_contact_unfinished;
         contacts = crease_rows_.of(*body.objects.surface(*scene_), contacts);
         if (body.bounded) track_velocity(number, pose, periods, !contacts.empty());
@@ -181,19 +181,8 @@ std::span<const Contact> Renderer::update_contact(Body& body, const ProbePose& p
                                                   const EndsFriction& friction) noexcept
 {
     const std::span<const Contact> contacts = body.contact.update(pose, friction);
-    const ContactCounters& spent = body.contact.spent();
-    work_.queries += spent.sweeps;
-    work_.triangles += spent.triangles_tested;
-    work_.steps += spent.walk_steps;
+    static_cast<ContactCounters&>(work_) = work_ + body.contact.spent();
     return contacts;
-}
-
-ContactWork Renderer::work() const noexcept
-{
-    ContactWork all = work_;
-    all.queries += effects_.queries();
-    all.triangles += effects_.triangles();
-    return all;
 }
 
 void Renderer::between_ticks() noexcept
@@ -341,7 +330,7 @@ void Renderer::update_effects(Body& body, std::span<const Contact> contacts,
         const auto touched =
             std::find_if(parts.begin(), parts.end(), [&](const PartContacts& of) { return of.part == part; });
         if (body.objects.joined || held_out_m == glm::dvec3(0)) // nothing pulls to what holds the tip
-            body.aim_m += effects_.pull(numbers[part], placement, held_out_m, stiffness_n_per_m);
+            body.aim_m += effects_.pull(numbers[part], placement, held_out_m, stiffness_n_per_m, work_);
         effects_.update(numbers[part], placement,
                         touched == parts.end() ? std::span<const Contact>() : touched->contacts);
     }

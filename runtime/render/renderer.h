@@ -66,11 +66,10 @@ struct TickResult {
     uint32_t faults = 0;
 };
 
-// Of all objects since the renderer was made, effects included: walks through trees of boxes, triangles that these
-// delivered, steps of proxies over surfaces, and triangles that were read ahead. `objects`: looked at, summed over the
-// ticks and the scenes that were taken over.
-struct ContactWork {
-    uint64_t queries = 0, triangles = 0, steps = 0, read_ahead = 0, objects = 0;
+// Of all objects since the renderer was made, effects included; triangles that were read ahead; and `objects`: looked
+// at, summed over the ticks and the scenes that were taken over.
+struct ContactWork : ContactCounters {
+    uint64_t read_ahead = 0, objects = 0;
 };
 
 class Renderer {
@@ -108,7 +107,7 @@ public:
     bool faded_away() const noexcept { return shares_.force == 0; }
     double force_limit_n() const noexcept { return force_limit_n_; }
     const SkippedStages& skipped() const noexcept { return skipped_; }
-    ContactWork work() const noexcept;
+    const ContactWork& work() const noexcept { return work_; }
 
 private:
     // What the servo remembers of one object, whichever body it is of.

@@ -67,7 +67,7 @@ void Renderer::take_over(Renderer& before) noexcept
     waiting_ = waiting_ && before.waiting_;
     shares_ = before.shares_;
     skipped_ = before.skipped_;
-    work_ = before.work();
+    work_ = before.work_;
     last_pose_ = before.last_pose_;
     last_pose_period_ = before.last_pose_period_;
     if (history_ && before.history_) history_ = before.history_;

@@ -17,7 +17,8 @@ constexpr double up = 1 + 1e-9;
 
 } // namespace
 
-std::optional<NearestOnSurface> SurfaceDistance::within(const glm::dvec3& from_m, double reach_m) noexcept
+std::optional<NearestOnSurface> SurfaceDistance::within(const glm::dvec3& from_m, double reach_m,
+                                                        CollisionCount& count) noexcept
 {
     if (glm::distance(from_m, free_at_m_) * up < free_m_ - reach_m) return std::nullopt;
     const glm::dvec3 from = surface_->lattice.units(from_m);
@@ -37,8 +38,8 @@ std::optional<NearestOnSurface> SurfaceDistance::within(const glm::dvec3& from_m
     };
     if (face_ != none) visit(face_);
     surface_->tree->ball(from, distance, std::ref(visit));
-    ++queries_;
-    triangles_ += seen;
+    ++count.sweeps;
+    count.triangles_tested += seen;
 
     face_ = face;
     free_at_m_ = from_m;

@@ -1,7 +1,7 @@
 // How far it is from a point to a surface, for what acts before anything is touched.
 #pragma once
 
-#include "runtime/surface/surface.h"
+#include "runtime/surface/collision.h"
 
 #include <cstdint>
 #include <memory>
@@ -23,12 +23,9 @@ public:
     // The nearest point within reach, or nothing. Of several that are equally near, always the same one for the same
     // sequence of questions. Looks at `triangles_max` triangles at most, near ones first: beyond that, as in the
     // centre of a fine ball, the nearest of these. Allocates nothing.
-    std::optional<NearestOnSurface> within(const glm::dvec3& from_m, double reach_m) noexcept;
+    std::optional<NearestOnSurface> within(const glm::dvec3& from_m, double reach_m, CollisionCount& count) noexcept;
 
     static constexpr uint32_t triangles_max = 1024;
-
-    uint64_t queries() const noexcept { return queries_; } // that asked the tree
-    uint64_t triangles() const noexcept { return triangles_; }
 
 private:
     static constexpr uint32_t none = ~uint32_t{0};
@@ -38,7 +35,6 @@ private:
     // Nothing is nearer than `free_m` to where `free_at_m` is; below 0: not known.
     glm::dvec3 free_at_m_{0};
     double free_m_ = -1;
-    uint64_t queries_ = 0, triangles_ = 0;
 };
 
 } // namespace haptel::runtime

@@ -64,8 +64,9 @@ Seen stroke(uint32_t subdivisions, int objects, bool between_ticks = true)
         if (between_ticks) renderer.between_ticks();
         const ContactWork& after = renderer.work();
         if (i < 1) continue;
-        all.queries += after.queries - before.queries;
-        steps.push_back(static_cast<double>(after.steps - before.steps + after.triangles - before.triangles));
+        all.queries += after.sweeps - before.sweeps;
+        steps.push_back(static_cast<double>(after.walk_steps - before.walk_steps + after.triangles_tested -
+                                            before.triangles_tested));
         seen.push_back(steps.back() + static_cast<double>(after.read_ahead - before.read_ahead));
     }
     const auto p99 = [](std::vector<double> of) {
@@ -120,11 +121,11 @@ TEST_CASE("among blades that stand through a plane a tick looks at those around,
         renderer.tick(at(0, 0, 0.001));
         uint64_t most = 0, sum = 0;
         for (int i = 0; i < 1000; ++i) {
-            const uint64_t before = renderer.work().triangles;
+            const uint64_t before = renderer.work().triangles_tested;
             const TickResult felt = renderer.tick(at(1e-3 * std::sin(0.02 * i), 15e-3 * std::sin(0.013 * i), -0.5e-3));
             CHECK(std::abs(felt.depth_m - 0.5e-3) < 1e-9);
             CHECK((felt.faults & fault_contact_unfinished) == 0);
-            const uint64_t looked_at = renderer.work().triangles - before;
+            const uint64_t looked_at = renderer.work().triangles_tested - before;
             most = std::max(most, looked_at);
             sum += looked_at;
         }

@@ -130,9 +130,9 @@ TEST_CASE("what acts at a distance wakes its object in time, however the hand co
         CHECK(std::fabs(result.force_n.z + (x < 1 ? 4 * force_n * x * (1 - x) : 0)) < 1e-8);
     }
     CHECK(renderer.skipped().objects > 2000 * 16);
-    const uint64_t queries = renderer.work().queries;
+    const uint64_t queries = renderer.work().sweeps;
     for (int i = 0; i < 1000; ++i) renderer.tick(at(1e-5 * i, 0, 0.3));
-    CHECK(renderer.work().queries <= queries + 10); // out of reach: nobody is asked
+    CHECK(renderer.work().sweeps <= queries + 10); // out of reach: nobody is asked
 }
 
 TEST_CASE("no force is sent before it is small, where the scene waits for that")

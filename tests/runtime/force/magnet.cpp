@@ -44,6 +44,7 @@ TEST_CASE("the distance to a surface is that of its nearest triangle, found by l
     for (const char* name : {"torus", "box", "icosphere"}) {
         const auto surface = build_surface(shape(name, 0.1)).surface;
         SurfaceDistance distance(surface);
+        CollisionCount count;
         glm::dvec3 p(0.06, 0, 0.02);
         double worst_m = 0;
         int within = 0, wrong = 0;
@@ -51,19 +52,19 @@ TEST_CASE("the distance to a surface is that of its nearest triangle, found by l
         for (int i = 0; i < test::tries(1000); ++i) {
             p = 0.99 * p + (i % 50 == 0 ? 0.03 : 0.002) * glm::dvec3(normal(random), normal(random), normal(random));
             const double truth_m = distance_to(*surface, p);
-            const auto found = distance.within(p, reach_m);
+            const auto found = distance.within(p, reach_m, count);
             wrong += found.has_value() != (truth_m <= reach_m);
             if (!found) continue;
             ++within;
             worst_m = std::max({worst_m, std::fabs(found->distance_m - truth_m),
                                 std::fabs(glm::distance(p, found->point_m) - truth_m)});
         }
-        CAPTURE(name, worst_m, distance.queries(), distance.triangles());
+        CAPTURE(name, worst_m, count.sweeps, count.triangles_tested);
         CHECK(wrong == 0);
         CHECK(within > test::tries(250));
         CHECK(worst_m < 1e-12);
-        CHECK(distance.queries() <= 1000);
-        CHECK(distance.triangles() < 150 * distance.queries()); // of 20 480
+        CHECK(count.sweeps <= 1000);
+        CHECK(count.triangles_tested < 150 * count.sweeps); // of 20 480
     }
 }
 
@@ -71,13 +72,14 @@ TEST_CASE("a surface that is out of reach is asked once for a long way")
 {
     const auto surface = build_surface(shape("icosphere", 0.1)).surface;
     SurfaceDistance distance(surface);
-    for (int i = 0; i < 1000; ++i) CHECK_FALSE(distance.within({0.08 + 1e-6 * i, 0, 0}, 0.01));
-    CHECK(distance.queries() == 1);
+    CollisionCount asked, looked;
+    for (int i = 0; i < 1000; ++i) CHECK_FALSE(distance.within({0.08 + 1e-6 * i, 0, 0}, 0.01, asked));
+    CHECK(asked.sweeps == 1);
     // In its centre all triangles are equally near: a bound on the work holds, not one on the answer.
     SurfaceDistance inside(build_surface(make_icosphere(6)).surface);
-    REQUIRE(inside.within({0, 0, 0}, 2));
-    CHECK(inside.triangles() == SurfaceDistance::triangles_max);
-    CHECK(std::fabs(inside.within({0, 0, 0}, 2)->distance_m - 0.5) < 1e-3);
+    REQUIRE(inside.within({0, 0, 0}, 2, looked));
+    CHECK(looked.triangles_tested == SurfaceDistance::triangles_max);
+    CHECK(std::fabs(inside.within({0, 0, 0}, 2, looked)->distance_m - 0.5) < 1e-3);
 }
 
 TEST_CASE("a magnet pulls toward a plate as its potential says, from its reach to the surface")

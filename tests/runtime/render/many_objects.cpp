@@ -208,9 +208,9 @@ TEST_CASE("what a swap does for who is near, but farther than the hand is held o
     const ContactWork until_then = before.work();
     after.take_over(before);
     const uint64_t objects = after.work().objects - until_then.objects;
-    CAPTURE(objects, after.work().queries - until_then.queries);
+    CAPTURE(objects, after.work().sweeps - until_then.sweeps);
     CHECK(objects >= 5);
-    CHECK(after.work().queries - until_then.queries <= objects + 8);
+    CHECK(after.work().sweeps - until_then.sweeps <= objects + 8);
     CHECK(after.tick(at(0.25, 0.25, 0.001)).contacts == 1);
 }
 
