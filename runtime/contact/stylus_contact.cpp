@@ -184,8 +184,6 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
 // Tries larger regions after success and smaller ones after failure, and none while even a success would not pay.
 void StylusContact::look_around() noexcept
 {
-    tip_->look_around();
-    tail_->look_around();
     const double step = std::exchange(unspared_, -1);
     if (step < 0) return;
     if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
