@@ -283,13 +283,4 @@ double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) c
     return at_hand ? surface().gap_to_box_m(tip_m, tail_m) : 0;
 }
 
-bool StylusContact::shaft_crosses() const noexcept
-{
-    if (!has_shaft_ || tracked_ || !tip_->is_placed() || tip_->contact().touching) return false;
-    const Shaft whole = within(hand_.tip, hand_.tail);
-    Crossing crossing;
-    CollisionCount count;
-    return first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, count);
-}
-
 } // namespace haptel::runtime

@@ -70,10 +70,6 @@ public:
     // At least so far is it from any point of the stylus, where it was last, to the nearest triangle; 0: not known.
     double gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
 
-    // The shaft passes through the surface while the tip does not press: it was put down so. A query, made only for who
-    // asks.
-    bool shaft_crosses() const noexcept;
-
     ContactCounters counters() const noexcept;
     const Surface& surface() const noexcept { return tip_->surface(); }
 
