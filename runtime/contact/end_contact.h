@@ -50,7 +50,6 @@ public:
     // The first of them; if it touches nothing, where the hand is.
     virtual const Contact& contact() const noexcept = 0;
     const ContactCounters& counters() const noexcept { return counters_; }
-    virtual const Surface& surface() const noexcept = 0;
 
     virtual const Proxy& proxy() const noexcept = 0; // lattice units
 

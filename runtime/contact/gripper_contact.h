@@ -29,7 +29,6 @@ public:
     std::span<const Contact> contacts() const noexcept { return {contacts_, count_}; }
     // Of both fingers.
     ContactCounters counters() const noexcept { return tip_->counters() + tail_->counters(); }
-    const Surface& surface() const noexcept { return tip_->surface(); }
 
 private:
     std::unique_ptr<EndContact> tip_, tail_;

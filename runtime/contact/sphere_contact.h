@@ -47,7 +47,7 @@ public:
     double gap_m(const glm::dvec3& hand_m) const noexcept override;
     std::span<const Contact> contacts() const noexcept override { return {contacts_, contact_count_}; }
     const Contact& contact() const noexcept override { return contacts_[0]; }
-    const Surface& surface() const noexcept override { return *surface_; }
+    const Surface& surface() const noexcept { return *surface_; }
     glm::dvec3 proxy_m() const noexcept { return surface_->lattice.metres(proxy_.at); }
 
     const Proxy& proxy() const noexcept override { return proxy_; }

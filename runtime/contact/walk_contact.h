@@ -36,8 +36,6 @@ public:
     double gap_m(const glm::dvec3& hand_m) const noexcept override;
     std::span<const Contact> contacts() const noexcept override { return {&contact_, contact_.touching ? 1u : 0u}; }
     const Contact& contact() const noexcept override { return contact_; }
-    const Surface& surface() const noexcept override { return *surface_; }
-
     const Proxy& proxy() const noexcept override { return proxy_; }
 
 private:

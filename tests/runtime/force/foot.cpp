@@ -28,7 +28,7 @@ constexpr double size_m = 0.1, ball_m = size_m / 2;
 // Held by contact off the facets, and the smooth foot of that; or none.
 class Stroke {
 public:
-    explicit Stroke(std::shared_ptr<const Surface> surface) : contact_(std::move(surface), false) {}
+    explicit Stroke(std::shared_ptr<const Surface> surface) : surface_(surface), contact_(std::move(surface)) {}
 
     const FacetLines& lines() const { return lines_; } // of that foot
 
@@ -37,11 +37,12 @@ public:
         contact_.tick(hand_m, {});
         const Contact& contact = contact_.contact();
         if (!contact.touching || contact.depth_m == 0) return std::nullopt;
-        const Foot foot = smooth_foot(contact_.surface(), contact, hand_below(contact), lines_);
+        const Foot foot = smooth_foot(*surface_, contact, hand_below(contact), lines_);
         return foot.share > 0 ? std::optional(foot) : std::nullopt;
     }
 
 private:
+    std::shared_ptr<const Surface> surface_;
     WalkContact contact_;
     FacetLines lines_;
 };

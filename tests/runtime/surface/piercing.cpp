@@ -80,9 +80,10 @@ TEST_CASE("where sheets pierce each other the proxy is the nearest point of thei
         dvec3 up(0);
         for (const dvec3& n : normals) up += n;
         up = glm::normalize(up);
-        const auto point = make_point(surface_of(make_sheets(normals)));
+        const auto surface = surface_of(make_sheets(normals));
+        const auto point = make_point(surface);
         EndContact& contact = *point;
-        const Lattice& lattice = contact.surface().lattice;
+        const Lattice& lattice = surface->lattice;
         std::mt19937_64 random(3);
         std::normal_distribution<double> normal;
         dvec3 hand = 0.1 * up;
