@@ -58,6 +58,6 @@ protected:
 };
 
 // For a point on this surface.
-std::unique_ptr<EndContact> make_point(const std::shared_ptr<const Surface>& surface, bool skips_free_space = true);
+std::unique_ptr<EndContact> make_point(const std::shared_ptr<const Surface>& surface);
 
 } // namespace haptel::runtime

@@ -4,8 +4,8 @@
 
 namespace haptel::runtime {
 
-GripperContact::GripperContact(const std::shared_ptr<const Surface>& surface, bool skips_free_space)
-    : tip_(make_point(surface, skips_free_space)), tail_(make_point(surface, skips_free_space))
+GripperContact::GripperContact(const std::shared_ptr<const Surface>& surface)
+    : tip_(make_point(surface)), tail_(make_point(surface))
 {
 }
 

@@ -11,7 +11,7 @@ namespace haptel::runtime {
 
 class GripperContact {
 public:
-    explicit GripperContact(const std::shared_ptr<const Surface>& surface, bool skips_free_space = true);
+    explicit GripperContact(const std::shared_ptr<const Surface>& surface);
 
     // One tick: where its fingers touch, the tip first. A finger whose pose is not finite is held where it was.
     std::span<const Contact> update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,

@@ -9,15 +9,15 @@ namespace haptel::runtime {
 namespace {
 
 std::variant<std::unique_ptr<EndContact>, StylusContact, GripperContact>
-make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, bool skips_free_space, double rate_hz)
+make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, double rate_hz)
 {
     switch (probe.kind) {
     case ProbeKind::point: break;
     case ProbeKind::sphere: return std::make_unique<SphereContact>(surface, probe.radius_m);
-    case ProbeKind::stylus: return StylusContact(surface, skips_free_space, rate_hz);
-    case ProbeKind::gripper: return GripperContact(surface, skips_free_space);
+    case ProbeKind::stylus: return StylusContact(surface, rate_hz);
+    case ProbeKind::gripper: return GripperContact(surface);
     }
-    return make_point(surface, skips_free_space);
+    return make_point(surface);
 }
 
 // Out of where a point touches: in a narrow pit its contact's normal, from the hand, leads into a wall.
@@ -36,11 +36,10 @@ glm::dvec3 way_out(const Surface& surface, const Contact& contact)
 
 } // namespace
 
-ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
-                           bool skips_free_space, double rate_hz)
+ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, double rate_hz)
     : surface_(surface.get())
     , by_planes_(probe.kind == ProbeKind::sphere || !surface->is_clean())
-    , contact_(make(probe, surface, skips_free_space, rate_hz))
+    , contact_(make(probe, surface, rate_hz))
 {
 }
 
@@ -118,14 +117,14 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
 }
 
 // A ball keeps the faces around it by itself.
-uint32_t ProbeContact::read_ahead() noexcept
+uint32_t ProbeContact::read_ahead(bool looks_around) noexcept
 {
     auto* end = std::get_if<End>(&contact_);
     auto* gripper = std::get_if<GripperContact>(&contact_);
     auto* stylus = std::get_if<StylusContact>(&contact_);
-    if (end) (*end)->look_around();
-    if (gripper) gripper->look_around();
-    if (stylus) stylus->look_around();
+    if (end && looks_around) (*end)->look_around();
+    if (gripper && looks_around) gripper->look_around();
+    if (stylus && looks_around) stylus->look_around();
     if (by_planes_) return 0;
     uint32_t seen = 0;
     for (const Contact& at : contacts())

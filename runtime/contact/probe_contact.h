@@ -15,9 +15,8 @@ namespace haptel::runtime {
 
 class ProbeContact {
 public:
-    // `skips_free_space`: a probe that knows its clearance is spared queries. `rate_hz`: of the ticks.
-    ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
-                 bool skips_free_space = true, double rate_hz = 1000);
+    // `rate_hz`: of the ticks.
+    ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, double rate_hz = 1000);
 
     // One tick: the contacts, none if the probe is free. On a joined surface each belongs to one object. Where neither
     // the pose nor the friction has changed, as between two counts of an encoder, all is as it was.
@@ -37,8 +36,8 @@ public:
     std::optional<ProbePose> held(const ProbePose& hand, double off_m) const noexcept;
 
     // Between two ticks: brings what the next one may need into the cache, and looks how far it is free around the
-    // hand. Changes no contact. Returns how many faces it looked at.
-    uint32_t read_ahead() noexcept;
+    // hand, which spares queries, if asked to. Changes no contact. Returns how many faces it looked at.
+    uint32_t read_ahead(bool looks_around) noexcept;
 
     // A lower bound, in metres, of the distance from the probe in this pose to the nearest triangle; 0: not known.
     double gap_m(const ProbePose& pose) const noexcept;

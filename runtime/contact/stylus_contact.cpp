@@ -32,10 +32,9 @@ std::unique_ptr<SphereContact> as_end(const std::shared_ptr<const Surface>& surf
 
 } // namespace
 
-StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space, double rate_hz)
+StylusContact::StylusContact(std::shared_ptr<const Surface> surface, double rate_hz)
     : tip_(as_end(surface))
     , tail_(as_end(surface))
-    , skips_free_space_(skips_free_space)
     , patience_ticks_(static_cast<uint32_t>(std::max(1.0, std::round(patience_s * rate_hz))))
 {
 }
@@ -172,7 +171,7 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
         ++counters_.sweeps;
         clear_.radius = 0;
         if (!swept_to(to).is_empty(*surface().tree)) return false;
-        if (skips_free_space_) unspared_ = farther(shaft_, to);
+        unspared_ = farther(shaft_, to);
     }
     shaft_ = to;
     reached_ = hand_;

@@ -43,9 +43,8 @@ namespace haptel::runtime {
 
 class StylusContact {
 public:
-    // `skips_free_space`: a known clearance spares queries.
     // `rate_hz`: of the ticks.
-    explicit StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true, double rate_hz = 1000);
+    explicit StylusContact(std::shared_ptr<const Surface> surface, double rate_hz = 1000);
 
     // One tick: the hand's tip and tail, metres, in the object's space. In the first tick the stylus is put down along
     // the way from its tail to its tip: if that way enters the object through a front side, the tip touches there. If
@@ -160,7 +159,6 @@ private:
     uint32_t nearest_face(const SphereContact& end, double along) const noexcept;
 
     std::unique_ptr<SphereContact> tip_, tail_;
-    bool skips_free_space_;
     Shaft hand_;                 // lattice units, neither rounded nor clamped
     double begin_ = 0, end_ = 1; // shares of the stylus that lie in the workspace
     Shaft reached_;              // the hand for which the shaft was held last

@@ -16,10 +16,7 @@ constexpr double direction_needs = 64;
 
 } // namespace
 
-WalkContact::WalkContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
-    : surface_(std::move(surface)), skips_free_space_(skips_free_space)
-{
-}
+WalkContact::WalkContact(std::shared_ptr<const Surface> surface) : surface_(std::move(surface)) {}
 
 void WalkContact::reset() noexcept
 {
@@ -75,7 +72,7 @@ bool WalkContact::take(const glm::dvec3& hand_m) noexcept
 void WalkContact::move_freely(const glm::dvec3& hand) noexcept
 {
     const double step = glm::distance(hand, proxy_.at);
-    if ((step == 0 && skips_free_space_) || glm::distance(hand, clear_.centre) < clear_.radius) {
+    if (step == 0 || glm::distance(hand, clear_.centre) < clear_.radius) {
         proxy_.at = hand;
         return;
     }
@@ -93,7 +90,7 @@ void WalkContact::move_freely(const glm::dvec3& hand) noexcept
         return;
     }
     proxy_.at = hand;
-    if (skips_free_space_) unspared_ = step;
+    unspared_ = step;
 }
 
 // Looks somewhat farther than the last ball was large, and not at all where the hand would leave a ball at once.

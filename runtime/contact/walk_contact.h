@@ -26,8 +26,7 @@ struct Clearance {
 
 class WalkContact final : public EndContact {
 public:
-    // `skips_free_space`: a known clearance spares queries.
-    explicit WalkContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
+    explicit WalkContact(std::shared_ptr<const Surface> surface);
 
     void tick(const glm::dvec3& hand_m, const Friction& friction) noexcept override;
     void follow(const glm::dvec3& hand_m) noexcept override;
@@ -44,7 +43,6 @@ private:
     void describe() noexcept;
 
     std::shared_ptr<const Surface> surface_;
-    bool skips_free_space_;
     Contact contact_;
     Proxy proxy_;
     glm::dvec3 hand_{0};                  // lattice units, and below: a lattice point of the workspace

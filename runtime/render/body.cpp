@@ -58,7 +58,7 @@ Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe
     , motion(of.motion(scene))
     , bounded(bounds_of(scene, of))
     , around(box_of(*of.surface(scene)))
-    , contact(probe, of.surface(scene), scene.servo.skips.free_space, scene.servo.rate_hz)
+    , contact(probe, of.surface(scene), scene.servo.rate_hz)
     , placement(of.placement(scene))
     , velocity(1 / scene.servo.rate_hz)
     , tail_velocity(1 / scene.servo.rate_hz)

@@ -192,7 +192,7 @@ void Renderer::between_ticks() noexcept
     for (std::size_t i = 0; i < sleep_queue_.awake().size(); ++i) {
         const uint32_t number = sleep_queue_.awake()[i];
         if (bodies_[number].asleep) continue;
-        work_.read_ahead += bodies_[number].contact.read_ahead();
+        work_.read_ahead += bodies_[number].contact.read_ahead(scene_->servo.skips.free_space);
         // How far it is free may be known by now.
         if (last_pose_ && !bodies_[number].contact.touches() && sleeps(number, *last_pose_)) --i;
     }

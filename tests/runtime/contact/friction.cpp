@@ -80,7 +80,7 @@ TEST_CASE("sliding is not forgotten between two counts of an encoder, at any rat
             for (const double count_m : {0.0, 5e-6, 30e-6, 60e-6})
                 for (const double speed_m_per_s : {0.02, 0.1}) {
                     CAPTURE(static_cast<int>(probe.settings.kind), rate_hz, count_m, speed_m_per_s);
-                    ProbeContact contact(probe.settings, surface, true, rate_hz);
+                    ProbeContact contact(probe.settings, surface, rate_hz);
                     const Encoder encoder{count_m};
                     const auto go = [&](double x, double z) {
                         return sum(contact.update(pose(probe, encoder({x, 0.0113, probe.above_m + z})), material));

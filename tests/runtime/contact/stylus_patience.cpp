@@ -26,7 +26,7 @@ std::vector<std::optional<int>> ticks_until_let_go(double rate_hz, int wait_tick
     std::uniform_real_distribution<double> uniform(-1, 1);
     const auto anywhere = [&] { return 0.07 * dvec3(uniform(random), uniform(random), uniform(random)); };
     for (int hand = 0; hand < tries(300); ++hand) {
-        StylusContact stylus(surface, true, rate_hz);
+        StylusContact stylus(surface, rate_hz);
         for (int jump = 0; jump < 3; ++jump) {
             const dvec3 tip = anywhere(), tail = tip + 0.1 * glm::normalize(anywhere());
             stylus.update(tip, tail, {});
