@@ -49,8 +49,6 @@ struct EndsFriction {
 struct Contact {
     bool touching = false;
     bool sliding = false;        // dynamic friction holds: the proxy slides, or slid and does not stick yet
-    bool hand_held = false;      // the pose was not finite: the last good one was used
-    bool hand_clamped = false;   // the hand was farther than four half extents from the object's centre
     uint32_t face = 0, side = 0; // the face under the proxy and the side touched; 0: front
     glm::dvec3 proxy_m{0};
     glm::dvec3 hand_m{0};             // the tip as used: held, clamped, rounded to the lattice

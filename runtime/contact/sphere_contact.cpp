@@ -55,10 +55,7 @@ void SphereContact::reset() noexcept
 
 void SphereContact::tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail) noexcept
 {
-    if (!finite(hand_m)) {
-        for (Contact& contact : contacts_) contact.hand_held = true;
-        return;
-    }
+    if (!finite(hand_m)) return;
     aim(surface_->lattice.units(hand_m));
     slide_on(surface_->lattice.metres(hand_) - contacts_[0].hand_m, friction);
     if (!placed_) {
@@ -85,7 +82,6 @@ void SphereContact::follow(const glm::dvec3& hand_m) noexcept
 void SphereContact::aim(const glm::dvec3& hand) noexcept
 {
     hand_before_ = std::exchange(hand_, Lattice::snap_units(hand));
-    clamped_ = Lattice::beyond(hand_ - hand, Lattice::vertex_spacing);
 }
 
 void SphereContact::slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept
@@ -340,7 +336,6 @@ void SphereContact::tell_held(const glm::dvec3& aim, std::span<const uint32_t> p
                               const glm::dvec3& lag) noexcept
 {
     hand_ = aim;
-    clamped_ = false;
     Held held{proxy_.at, std::min<std::size_t>(planes.size(), 3), {}};
     for (std::size_t i = 0; i < held.count; ++i)
         held.row[i] = {faces_.face(planes[i]), faces_.rows()[planes[i]].normal, pushes[i]};

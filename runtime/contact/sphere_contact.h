@@ -160,7 +160,7 @@ private:
     double grown_before_ = 0; // it went
     glm::dvec3 hand_{0}, hand_before_{0};
     Proxy proxy_; // the centre; on a face while it touches
-    bool is_point_, placed_ = false, clamped_ = false;
+    bool is_point_, placed_ = false;
     NearFaces faces_;
     Laid laid_ = Laid::before;     // those picked last
     Neighbourhood around_, close_; // of all found, of those picked

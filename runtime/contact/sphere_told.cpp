@@ -26,8 +26,6 @@ void SphereContact::keep_told() noexcept
         contacts_[i].depth_m *= kept;
         contacts_[i].lag_m *= kept;
         contacts_[i].hand_m = surface_->lattice.metres(hand_);
-        contacts_[i].hand_held = false;
-        contacts_[i].hand_clamped = clamped_;
     }
 }
 
@@ -89,8 +87,6 @@ void SphereContact::tell_nothing() noexcept
     contact_count_ = 0;
     contacts_[0].proxy_m = surface_->lattice.metres(proxy_.at);
     contacts_[0].hand_m = surface_->lattice.metres(hand_);
-    contacts_[0].hand_clamped = clamped_;
-    contacts_[0].hand_held = false;
 }
 
 // What holds the ball where it is, off the nearest place by friction.
@@ -112,7 +108,6 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
         contact = {};
         contact.touching = true;
         contact.sliding = proxy_.sliding;
-        contact.hand_clamped = clamped_;
         contact.normal = normal;
         contact.face = touching_face(face, normal, proxy_.at);
         const NearestPoint& point = nearest_on(contact.face, proxy_.at);

@@ -62,7 +62,6 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
 {
     if (!finite(tip_m)) { // what touches goes on touching
         tip_->tick(tip_m, friction.tip);
-        for (Contact& contact : contacts_) contact.hand_held = true;
         return tip_->contact();
     }
     unspared_ = -1;

@@ -61,11 +61,9 @@ double WalkContact::gap_m(const glm::dvec3& hand_m) const noexcept
 // Takes the pose; false if there has never been a good one.
 bool WalkContact::take(const glm::dvec3& hand_m) noexcept
 {
-    contact_.hand_held = !finite(hand_m);
-    if (contact_.hand_held) return placed_;
+    if (!finite(hand_m)) return placed_;
     before_ = std::exchange(true_hand_, surface_->lattice.units(hand_m));
     hand_ = Lattice::snap_units(true_hand_);
-    contact_.hand_clamped = Lattice::beyond(hand_ - true_hand_, Lattice::vertex_spacing);
     return true;
 }
 

@@ -297,7 +297,6 @@ TEST_CASE("of a hand far outside it is the straight way that counts, not the way
         REQUIRE(glm::length(touch.proxy_m - dvec3(to.x, to.y, 0)) < 1e-9);
         // It stays in contact however far the hand goes down, and is let go above.
         REQUIRE(point.update({to.x, to.y, -1e9}).touching);
-        REQUIRE(point.contact().hand_clamped);
         REQUIRE(point.contact().depth_m < 4.1);
         REQUIRE_FALSE(point.update({to.x, to.y, 1e9}).touching);
 
