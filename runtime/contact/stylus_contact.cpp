@@ -109,8 +109,7 @@ bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noex
     hand_ = hand;
     if (tip_->proxy().touches()) hand_.tip = Lattice::snap_units(hand_.tip); // it does not let go of a hand that is far
     const glm::dvec3 along = hand_.tail - hand_.tip;
-    const bool tip_is_in = !Lattice::beyond(hand_.tip, Lattice::workspace),
-               tail_is_in = !Lattice::beyond(hand_.tail, Lattice::workspace);
+    const bool tip_is_in = !Lattice::beyond_workspace(hand_.tip), tail_is_in = !Lattice::beyond_workspace(hand_.tail);
     begin_ = 0, end_ = 1;
     for (int k = 0; k < 3 && !(tip_is_in && tail_is_in); ++k) {
         const double low = -drawn_in - hand_.tip[k], high = drawn_in - hand_.tip[k];

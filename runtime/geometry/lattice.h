@@ -37,9 +37,9 @@ struct Lattice {
     }
     glm::dvec3 units(const glm::dvec3& point_m) const noexcept { return (point_m - centre_m) / unit_m; } // not rounded
     // Whether a coordinate is larger, of either sign: what rounding leaves has any sign, and is asked for every tick.
-    static bool beyond(const glm::dvec3& v, double bound) noexcept
+    static bool beyond_workspace(const glm::dvec3& units) noexcept
     {
-        return std::fabs(v.x) > bound || std::fabs(v.y) > bound || std::fabs(v.z) > bound;
+        return std::fabs(units.x) > workspace || std::fabs(units.y) > workspace || std::fabs(units.z) > workspace;
     }
     // Leaves of the straight way between two places in lattice units what lies in the workspace, its ends lattice
     // points. False: nothing does.
