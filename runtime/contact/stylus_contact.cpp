@@ -68,13 +68,10 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
     left_ = {};
     const bool had_tip = begin_ == 0, had_tail = end_ == 1;
     has_shaft_ = take(tip_m, tail_m);
-    const uint64_t cut = tip_->counters().walks_cut;
-    if (!has_shaft_) {
-        tracked_ = false;
-        tip_->tick(tip_m, friction.tip);
-        counters_.walks_cut += tip_->counters().walks_cut - cut;
-    } else if (!tracked_) {
-        start(tip_m, friction.tip);
+    tracked_ = tracked_ && has_shaft_;
+    if (!tracked_) {
+        const uint64_t cut = tip_->counters().walks_cut;
+        has_shaft_ ? start(tip_m, friction.tip) : tip_->tick(tip_m, friction.tip);
         counters_.walks_cut += tip_->counters().walks_cut - cut;
     } else if (!pass_freely(tip_m, tail_m)) {
         if (!had_tip || begin_ > 0) tip_->restart(begin_ > 0 ? Lattice::snap_units(hand_.tip) : shaft_.tip);
@@ -88,7 +85,7 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
 void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
     tip_->follow(tip_m);
-    tracked_ = has_shaft_ = finite(tip_m) && take(tip_m, tail_m);
+    tracked_ = has_shaft_ = take(tip_m, tail_m);
     side_count_ = 0;
     clear_.radius = 0; // it may be out of it
     if (tracked_) {
@@ -103,9 +100,8 @@ void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) no
 bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
     const Lattice& lattice = surface().lattice;
-    if (!finite(tail_m)) return false;
     const Shaft hand{lattice.units(tip_m), lattice.units(tail_m)};
-    if (!std::isfinite(glm::length(hand.tail - hand.tip))) return false; // too far out to have a direction
+    if (!std::isfinite(glm::length(hand.tail - hand.tip))) return false; // it has no direction
     hand_ = hand;
     if (tip_->proxy().touches()) hand_.tip = Lattice::snap_units(hand_.tip); // it does not let go of a hand that is far
     const glm::dvec3 along = hand_.tail - hand_.tip;
