@@ -5,7 +5,7 @@
 
 namespace haptel::runtime {
 
-bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const WalkFriction& friction) noexcept
+bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const Friction& friction) noexcept
 {
     glm::dvec3 push_m(0), lag_m(0);
     double pressed_m = 0;

@@ -5,27 +5,10 @@
 
 #include <glm/glm.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <span>
 
 namespace haptel::runtime {
-
-// Coulomb friction coefficients, no unit; negative or not finite counts as 0, dynamic is held at most static. Both are
-// those across the grain, where there is one.
-struct Friction {
-    double static_coefficient = 0, dynamic_coefficient = 0;
-    Grain grain = {}; // in the space of what is touched
-
-    bool operator==(const Friction&) const = default;
-};
-inline WalkFriction checked(const Friction& friction) noexcept
-{
-    const auto coefficient = [](double mu) { return mu > 0 && std::isfinite(mu) ? mu : 0.0; };
-    const double rest = coefficient(friction.static_coefficient);
-    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest), friction.grain};
-}
 
 // Of what dynamic friction holds: below this share what slid sticks again.
 inline constexpr double sticks_again = 0.5;
@@ -82,7 +65,7 @@ struct Contact {
 // come back until less than `sticks_again` holds it: friction depends on displacement alone (Hayward and Armstrong
 // 2000), not on how long the hand rests, which it does between the counts of its encoder, more often the higher the
 // rate. Without dynamic friction it never does: what slid sticks again where it comes down anew.
-bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const WalkFriction& friction) noexcept;
+bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const Friction& friction) noexcept;
 
 // Since construction or reset(). Queries of a ball count among the sweeps, boxes that it was handed among the
 // triangles.

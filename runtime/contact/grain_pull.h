@@ -9,7 +9,7 @@ namespace haptel::runtime {
 
 class GrainPull {
 public:
-    GrainPull(const Surface& surface, const glm::dvec3& proxy, const glm::dvec3& hand, const WalkFriction& friction,
+    GrainPull(const Surface& surface, const glm::dvec3& proxy, const glm::dvec3& hand, const Friction& friction,
               uint32_t face, uint32_t side) noexcept
         : normal_(surface.facet_normal(face, side))
         , ellipse_(friction.grain, normal_)

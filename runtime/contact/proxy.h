@@ -5,6 +5,8 @@
 #include "runtime/surface/collision.h"
 #include "runtime/surface/surface.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace haptel::runtime {
@@ -24,11 +26,21 @@ struct Proxy {
     bool touches() const { return on != On::nothing; }
 };
 
-// Coulomb coefficients, checked: 0 <= dynamic <= static, finite.
-struct WalkFriction {
+// Coulomb friction coefficients, no unit; negative or not finite counts as 0, dynamic is held at most static. Both are
+// those across the grain, where there is one.
+struct Friction {
     double static_coefficient = 0, dynamic_coefficient = 0;
-    Grain grain = {};
+    Grain grain = {}; // in the space of what is touched
+
+    bool operator==(const Friction&) const = default;
 };
+// As it counts.
+inline Friction checked(const Friction& friction) noexcept
+{
+    const auto coefficient = [](double mu) { return mu > 0 && std::isfinite(mu) ? mu : 0.0; };
+    const double rest = coefficient(friction.static_coefficient);
+    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest), friction.grain};
+}
 
 // In one tick; the walk goes on in the next.
 inline constexpr uint32_t walk_steps_max = 4096;
@@ -40,7 +52,7 @@ inline constexpr uint32_t walk_steps_max = 4096;
 // At each feature it asks for the nearest point, to the hand, of the surface around (a face, the two faces of an edge,
 // the fan of a vertex). There the sign of the hand's height says whether the hand is on the free side: if so the proxy
 // leaves, if not it slides there.
-void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const Friction& friction,
           ContactCounters& count, uint32_t step_limit = walk_steps_max) noexcept;
 
 // Puts a free proxy on the face that its way crosses.

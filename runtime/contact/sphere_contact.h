@@ -166,7 +166,7 @@ private:
     Neighbourhood around_, close_; // of all found, of those picked
     double margin_at_first_;       // of a point, which meets few: as far as it goes
     double margin_;                // that suits the density of the mesh here
-    WalkFriction friction_;        // of this tick
+    Friction friction_;            // of this tick
     bool in_air_ = true;           // by now
     bool rests_ = false;           // friction holds it where it is
     bool solid_ = false;           // held by a group that there was no room to look into

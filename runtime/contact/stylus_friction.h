@@ -15,7 +15,7 @@ namespace haptel::runtime {
 
 // One end in one tick, and the plane of what it touches.
 struct EndFriction {
-    WalkFriction friction;
+    Friction friction;
     bool touches = false;
     bool slides = false; // the dynamic coefficient holds: it slid since it last stuck, or slips in this tick
     bool slips = false;  // static friction was exceeded in this tick

@@ -26,8 +26,7 @@ constexpr double sharp = 1.0 / 16;
 
 class Walk {
 public:
-    Walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
-         ContactCounters& count)
+    Walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const Friction& friction, ContactCounters& count)
         : surface_(surface), proxy_(proxy), hand_(hand), friction_(friction), count_(count)
     {
     }
@@ -67,7 +66,7 @@ private:
     const Surface& surface_;
     Proxy& proxy_;
     const glm::dvec3& hand_;
-    const WalkFriction& friction_;
+    const Friction& friction_;
     ContactCounters& count_;
     bool moved_ = false;
 };
@@ -417,7 +416,7 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
 
 } // namespace
 
-void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const Friction& friction,
           ContactCounters& count, uint32_t step_limit) noexcept
 {
     Walk(surface, proxy, hand, friction, count).run(step_limit);

@@ -31,7 +31,7 @@ void WalkContact::reset() noexcept
 void WalkContact::tick(const glm::dvec3& hand_m, const Friction& friction) noexcept
 {
     if (!take(hand_m)) return;
-    const WalkFriction coulomb = checked(friction);
+    const Friction coulomb = checked(friction);
     proxy_.sliding = proxy_.sliding && contact_.touching &&
                      slides_on({&contact_, 1}, surface_->lattice.metres(hand_) - contact_.hand_m, coulomb);
     if (placed_ && !proxy_.touches()) {

@@ -36,7 +36,7 @@ public:
 
     // `slides`: what slid before goes on to.
     template <class Followed>
-    bool tick(const dvec3& hand_m, const WalkFriction& friction, bool slides, Followed&& followed)
+    bool tick(const dvec3& hand_m, const Friction& friction, bool slides, Followed&& followed)
     {
         proxy_.sliding = proxy_.sliding && slides;
         const dvec3 hand = surface_.lattice.snap(hand_m);
@@ -180,7 +180,7 @@ Verdict judge(const std::shared_ptr<const Surface>& shared, uint64_t ticks, uint
     Verdict verdict;
     for (uint64_t i = 0; i < ticks; ++i) {
         const dvec3 at_m = hand.next();
-        const WalkFriction coefficients = checked(friction);
+        const Friction coefficients = checked(friction);
         const dvec3 way_m = surface.lattice.metres(surface.lattice.snap(at_m)) - contact.contact().hand_m;
         const bool slides = slides_on({&contact.contact(), 1}, way_m, coefficients);
         const Contact& touch = contact.update(at_m, friction);
