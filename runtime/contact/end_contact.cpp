@@ -8,8 +8,7 @@ namespace haptel::runtime {
 std::unique_ptr<EndContact> make_point(const std::shared_ptr<const Surface>& surface)
 {
     if (surface->is_clean()) return std::make_unique<WalkContact>(surface);
-    return std::make_unique<SphereContact>(surface, Lattice::point_radius * surface->lattice.unit_m,
-                                           SphereContact::Felt::as_point);
+    return std::make_unique<SphereContact>(surface);
 }
 
 } // namespace haptel::runtime

@@ -29,11 +29,11 @@ constinit thread_local std::array<glm::dvec3, SphereContact::turns_max*(SphereCo
     SphereContact::path_{};
 constinit thread_local uint32_t SphereContact::path_length_ = 0;
 
-SphereContact::SphereContact(std::shared_ptr<const Surface> surface, double radius_m, Felt felt)
+SphereContact::SphereContact(std::shared_ptr<const Surface> surface, std::optional<double> radius_m)
     : surface_(std::move(surface))
-    , radius_(radius_m / surface_->lattice.unit_m)
+    , radius_(radius_m ? *radius_m / surface_->lattice.unit_m : Lattice::point_radius)
     , grown_(radius_)
-    , is_point_(felt == Felt::as_point)
+    , is_point_(!radius_m)
     , faces_(*surface_)
     , margin_at_first_(is_point_ ? Lattice::extent : 0)
     , margin_(margin_at_first_)

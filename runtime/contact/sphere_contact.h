@@ -17,16 +17,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace haptel::runtime {
 
 class SphereContact final : public EndContact {
 public:
-    // As a point: the radius holds it off the surface, and is not felt.
-    enum class Felt : uint8_t { as_ball, as_point };
-    // The radius is at most the largest side of the object's box: larger balls do not fit beside it.
-    SphereContact(std::shared_ptr<const Surface> surface, double radius_m, Felt felt = Felt::as_ball);
+    // The radius is at most the largest side of the object's box: larger balls do not fit beside it. None: of a point,
+    // which Lattice::point_radius holds off the surface; that is not felt.
+    explicit SphereContact(std::shared_ptr<const Surface> surface, std::optional<double> radius_m = {});
 
     // The proxy_m of each contact is the point touched, its depth and normal what it holds of the way from the hand to
     // the proxy: depths times normals add up to that way, friction's lag apart. The first tick puts the ball down where

@@ -24,17 +24,11 @@ constexpr double least_length = 4096;
 // Lattice units, and share of what the springs are drawn by: what is not known and pushes less is not told.
 constexpr double least_push = 4096, least_push_share = 1e-6;
 
-std::unique_ptr<SphereContact> as_end(const std::shared_ptr<const Surface>& surface)
-{
-    return std::make_unique<SphereContact>(surface, Lattice::point_radius * surface->lattice.unit_m,
-                                           SphereContact::Felt::as_point);
-}
-
 } // namespace
 
 StylusContact::StylusContact(std::shared_ptr<const Surface> surface, double rate_hz)
-    : tip_(as_end(surface))
-    , tail_(as_end(surface))
+    : tip_(std::make_unique<SphereContact>(surface))
+    , tail_(std::make_unique<SphereContact>(surface))
     , patience_ticks_(static_cast<uint32_t>(std::max(1.0, std::round(patience_s * rate_hz))))
 {
 }

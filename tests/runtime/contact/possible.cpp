@@ -115,7 +115,7 @@ Verdict judge_ball(const std::shared_ptr<const Surface>& shared, uint64_t ticks,
     const Surface& surface = *shared;
     const ExactMesh exact(surface);
     WildHand hand(surface, seed);
-    SphereContact point(shared, Lattice::point_radius * surface.lattice.unit_m, SphereContact::Felt::as_point);
+    SphereContact point(shared);
     SphereContact* const contact = &point;
     contact->update(hand.outside());
     std::mt19937_64 random(seed);

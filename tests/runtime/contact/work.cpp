@@ -197,7 +197,7 @@ TEST_CASE("how deep the hand of a point is does not widen what it looks at")
 {
     const auto surface = test::surface_of(make_icosphere(7));
     const auto seen_by_point = [&](double depth) { // 1 cm a tick on a ball of 50 cm
-        SphereContact point(surface, Lattice::point_radius * surface->lattice.unit_m, SphereContact::Felt::as_point);
+        SphereContact point(surface);
         for (int i = 0; i < 1200; ++i) {
             const double a = 0.02 * i, b = 0.3 * a;
             const glm::dvec3 d(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
