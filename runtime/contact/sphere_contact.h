@@ -150,7 +150,6 @@ private:
     bool stands(const Held& held) noexcept;
     const NearestPoint& nearest_on(uint32_t face, const glm::dvec3& centre) noexcept;
     uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept;
-    uint32_t side_of(uint32_t face, const glm::dvec3& normal) const noexcept;
     void tell(const Held& held, const glm::dvec3& nearest) noexcept;
     void tell_free() noexcept;
     void tell_nothing() noexcept;
@@ -159,7 +158,7 @@ private:
     double radius_, grown_;   // lattice units; `grown_` of the ball that was put down into something
     double grown_before_ = 0; // it went
     glm::dvec3 hand_{0}, hand_before_{0};
-    Proxy proxy_; // the centre; on a face while it touches
+    Proxy proxy_; // the centre; on a face, whichever, while it touches
     bool is_point_, placed_ = false;
     NearFaces faces_;
     Laid laid_ = Laid::before;     // those picked last

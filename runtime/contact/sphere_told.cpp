@@ -68,12 +68,6 @@ uint32_t SphereContact::touching_face(uint32_t face, const glm::dvec3& normal, c
     return face;
 }
 
-// Of a face that the normal lies in the plane of, as at the rim of a lid, the front: rounding does not choose.
-uint32_t SphereContact::side_of(uint32_t face, const glm::dvec3& normal) const noexcept
-{
-    return glm::dot(normal, surface_->faces[face].normal) >= -same_plane ? 0 : 1;
-}
-
 void SphereContact::tell_free() noexcept
 {
     proxy_.on = Proxy::On::nothing;
@@ -111,7 +105,8 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
         contact.normal = normal;
         contact.face = touching_face(face, normal, proxy_.at);
         const NearestPoint& point = nearest_on(contact.face, proxy_.at);
-        contact.side = side_of(contact.face, contact.normal);
+        // In the plane of the face, as at the rim of a lid, the front: rounding does not choose.
+        contact.side = glm::dot(contact.normal, surface_->faces[contact.face].normal) >= -same_plane ? 0 : 1;
         contact.facet_normal = surface_->facet_normal(contact.face, contact.side);
         contact.barycentric = point.barycentric;
         contact.proxy_m = surface_->lattice.metres(point.at);
@@ -129,8 +124,6 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
     }
     if (contact_count_ == 0) tell_nothing();
     proxy_.on = Proxy::On::face;
-    proxy_.face = held.row[0].face;
-    proxy_.side = side_of(proxy_.face, held.row[0].normal);
 }
 
 } // namespace haptel::runtime
