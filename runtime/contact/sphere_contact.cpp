@@ -25,10 +25,6 @@ constexpr double follows = 0.99, follows_most = 0.5, follows_rubbing = 0.8;
 
 } // namespace
 
-constinit thread_local std::array<glm::dvec3, SphereContact::turns_max*(SphereContact::rounds_max + 1)>
-    SphereContact::path_{};
-constinit thread_local uint32_t SphereContact::path_length_ = 0;
-
 SphereContact::SphereContact(std::shared_ptr<const Surface> surface, std::optional<double> radius_m)
     : surface_(std::move(surface))
     , radius_(radius_m ? *radius_m / surface_->lattice.unit_m : Lattice::point_radius)

@@ -52,8 +52,8 @@ public:
 
     const Proxy& proxy() const noexcept override { return proxy_; }
 
-    // Of the last tick of this thread's balls: where each straight piece of its way ended, as far as it touched.
-    static std::span<const glm::dvec3> places() noexcept { return {path_.data(), path_length_}; }
+    // Of the last tick: where each straight piece of its way ended, as far as it touched.
+    std::span<const glm::dvec3> places() const noexcept { return {path_.data(), path_length_}; }
 
     // For a stylus, which holds both its ends and its shaft by one projection. Lattice units.
     bool is_placed() const noexcept { return placed_; }
@@ -174,8 +174,8 @@ private:
         glm::dvec3 centre{0};
         NearestPoint at{};
     } nearest_;
-    static constinit thread_local std::array<glm::dvec3, turns_max*(rounds_max + 1)> path_;
-    static constinit thread_local uint32_t path_length_;
+    std::array<glm::dvec3, turns_max*(rounds_max + 1)> path_;
+    uint32_t path_length_ = 0;
     Contact contacts_[3];
     std::size_t contact_count_ = 0;
 };

@@ -126,7 +126,7 @@ bool StylusContact::go_apart(const EndsFriction& friction) noexcept
         return true;
     };
     // Both ends at once may go through one triangle: the straight way of one of them has to be free.
-    const std::span<const glm::dvec3> places = SphereContact::places(); // of the tip
+    const std::span<const glm::dvec3> places = tip_->places();
     const bool is_straight = std::all_of(places.begin(), places.end(), [&](const glm::dvec3& place) {
         return place == from.tip || glm::round(place) == to.tip;
     });

@@ -127,7 +127,7 @@ Verdict judge_ball(const std::shared_ptr<const Surface>& shared, uint64_t ticks,
         bool possible = contact->is_placed();
         contact->update(at_m, friction);
         path.clear();
-        for (const dvec3& place : SphereContact::places()) path.push_back(glm::round(place));
+        for (const dvec3& place : contact->places()) path.push_back(glm::round(place));
         path.push_back(glm::round(contact->proxy().at));
         for (std::size_t k = 0; k < path.size() && possible; at = path[k++]) {
             ++verdict.steps;
