@@ -4,6 +4,7 @@
 #include "runtime/surface/corner.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace haptel::runtime {
@@ -97,7 +98,7 @@ void CreaseRows::add(const Surface& surface, const Contact& contact, std::size_t
     }
     const std::span<Contact> rows(rows_.data() + first, count_ - first);
     for (Contact& row : rows) row.lag_m = row.depth_m / depth_m * lag_m;
-    std::sort(rows.begin(), rows.end(), [](const Contact& a, const Contact& b) { return a.depth_m > b.depth_m; });
+    std::ranges::sort(rows, std::greater(), &Contact::depth_m);
 }
 
 } // namespace haptel::runtime

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace haptel::runtime {
@@ -116,7 +117,9 @@ void SphereContact::fly(double step_max) noexcept
 // One straight step to where the planes around let it come nearest to the hand. Those that hold it are seen from here.
 SphereContact::Held SphereContact::slide(double step_max, Stride& last, bool is_last) noexcept
 {
-    const Held held = held_by_picked();
+    faces_.see_from(proxy_.at);
+    const Held held = as_rows(is_point_ ? project(faces_.rows(), hand_, proxy_.at, distance_rounding)
+                                        : project(faces_, hand_, proxy_.at, distance_rounding));
     if (solid_) return {};
     in_air_ = held.count == 0; // off again
     if (in_air_) last = {};
@@ -148,43 +151,29 @@ glm::dvec3 SphereContact::further(const Held& held, const glm::dvec3& way, Strid
     return stride.further = farther;
 }
 
-SphereContact::Held SphereContact::held_by_picked() noexcept
-{
-    faces_.see_from(proxy_.at);
-    return as_rows(is_point_ ? project(faces_.rows(), hand_, proxy_.at, distance_rounding)
-                             : project(faces_, hand_, proxy_.at, distance_rounding));
-}
-
+// A point is felt as a point, though it is held as a ball: what pushes it is what would hold its middle on the planes
+// themselves. Who presses most comes first.
 SphereContact::Held SphereContact::as_rows(const Projection<glm::dvec3>& found) noexcept
 {
-    solid_ = std::any_of(found.active.begin(), found.active.begin() + std::ptrdiff_t(found.count),
-                         [&](uint32_t picked) { return faces_.is_solid(picked); });
+    solid_ = false;
     Held held{found.at, found.count, {}};
     for (std::size_t i = 0; i < found.count; ++i) {
         const uint32_t picked = found.active[i];
+        solid_ |= faces_.is_solid(picked);
         held.row[i] = {faces_.face(picked), faces_.rows()[picked].normal, found.push[i]};
     }
-    take_off_radius(held);
-    return held;
-}
-
-// A point is felt as a point, though it is held as a ball: what pushes it is what would hold its middle on the planes
-// themselves. Who presses most comes first.
-void SphereContact::take_off_radius(Held& held) const noexcept
-{
     if (is_point_ && held.count == 1) {
         held.row[0].push = std::max(0.0, held.row[0].push - grown_);
     } else if (is_point_ && held.count > 1) {
         std::array<HalfSpace, 3> planes;
         for (std::size_t i = 0; i < held.count; ++i)
             planes[i] = {held.row[i].normal, glm::dot(held.row[i].normal, held.at) - grown_};
-        const Projection<glm::dvec3> found = project({planes.data(), held.count}, hand_, held.at, distance_rounding);
+        const Projection<glm::dvec3> felt = project({planes.data(), held.count}, hand_, held.at, distance_rounding);
         for (Row& row : held.row) row.push = 0;
-        for (std::size_t i = 0; i < found.count; ++i) held.row[found.active[i]].push = found.push[i];
+        for (std::size_t i = 0; i < felt.count; ++i) held.row[felt.active[i]].push = felt.push[i];
     }
-    if (held.count > 1)
-        std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
-                  [](const Row& a, const Row& b) { return a.push > b.push; });
+    std::ranges::sort(std::span(held.row).first(held.count), std::greater(), &Row::push);
+    return held;
 }
 
 // Toward the hand, as near as it can slide, or to where it touches.
@@ -335,9 +324,8 @@ void SphereContact::tell_held(const glm::dvec3& aim, std::span<const uint32_t> p
     Held held{proxy_.at, std::min<std::size_t>(planes.size(), 3), {}};
     for (std::size_t i = 0; i < held.count; ++i)
         held.row[i] = {faces_.face(planes[i]), faces_.rows()[planes[i]].normal, pushes[i]};
-    std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
-              [](const Row& a, const Row& b) { return a.push > b.push; });
     if (held.count == 0) return tell_free();
+    std::ranges::sort(std::span(held.row).first(held.count), std::greater(), &Row::push);
     tell(held, proxy_.at - lag);
 }
 

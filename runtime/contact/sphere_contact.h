@@ -135,7 +135,6 @@ private:
     void fly(double step_max) noexcept;
     Held slide(double step_max, Stride& last, bool is_last) noexcept;
     glm::dvec3 further(const Held& held, const glm::dvec3& way, Stride& last) noexcept;
-    Held held_by_picked() noexcept;
     Held as_rows(const Projection<glm::dvec3>& found) noexcept;
     Held rub(double step_max, Stride& last, bool is_last) noexcept;
     double share_past(double way, double pressed) noexcept;
@@ -144,7 +143,6 @@ private:
     bool rubs() const noexcept { return friction_.static_coefficient > 0; }
     Way travel(bool until_it_touches) noexcept;
     bool move(const Friction& friction) noexcept;
-    void take_off_radius(Held& held) const noexcept;
     void pass() noexcept { path_[path_length_++] = proxy_.at; }
     void keep_told() noexcept;
     bool stands(const Held& held) noexcept;

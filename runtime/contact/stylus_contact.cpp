@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace haptel::runtime {
@@ -203,8 +204,7 @@ void StylusContact::report() noexcept
         const uint32_t face = facing(other.face()) > facing(side.face) ? other.face() : side.face;
         tell(glm::clamp(side.share, 0.0, 1.0), face, side.point, side.normal, side.push);
     }
-    std::sort(contacts_.begin() + first, contacts_.begin() + contact_count_,
-              [](const Contact& a, const Contact& b) { return a.depth_m > b.depth_m; });
+    std::ranges::sort(std::span(contacts_).first(contact_count_).subspan(first), std::greater(), &Contact::depth_m);
     if (end_ == 1)
         for (const Contact& contact : tail_->contacts()) {
             contacts_[contact_count_] = contact;
