@@ -67,6 +67,18 @@ struct Contact {
 // rate. Without dynamic friction it never does: what slid sticks again where it comes down anew.
 bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const Friction& friction) noexcept;
 
+// Friction is a way that ends early, by the coefficient times what presses, or does not begin. The share of a way that
+// remains; 0: it holds. What is left counts as none within `rounding`; else it slides from here on.
+inline double share_past(const Friction& friction, double way, double pressed, double rounding, bool& sliding) noexcept
+{
+    const double rest = friction.static_coefficient, slide = friction.dynamic_coefficient;
+    const double remaining = way - slide * pressed;
+    const bool is_rounding = remaining <= rounding;
+    if (way <= (sliding ? slide : rest) * pressed || (is_rounding && slide > 0)) return 0;
+    sliding = sliding || !is_rounding;
+    return remaining / way;
+}
+
 // Since construction or reset(). Queries of a ball count among the sweeps, boxes that it was handed among the
 // triangles.
 struct ContactCounters : CollisionCount {

@@ -137,7 +137,6 @@ private:
     glm::dvec3 further(const Held& held, const glm::dvec3& way, Stride& last) noexcept;
     Held as_rows(const Projection<glm::dvec3>& found) noexcept;
     Held rub(double step_max, Stride& last, bool is_last) noexcept;
-    double share_past(double way, double pressed) noexcept;
     void pick(double reach, Laid laid) noexcept;
     Laid lays(bool in_air, bool is_first) const noexcept;
     bool rubs() const noexcept { return friction_.static_coefficient > 0; }

@@ -51,7 +51,9 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last, bool is_la
             pass();
             return held;
         }
-        double share = share_past(length, eased * held.pushes());
+        const double pressed = eased * held.pushes(),
+                     rounding = std::max(distance_rounding, settled * friction_.dynamic_coefficient * pressed);
+        double share = share_past(friction_, length, pressed, rounding, proxy_.sliding);
         glm::dvec3 slip = share * along;
         if (ellipse && share > 0) {
             slip = along - ellipse->nearest(along, friction_.dynamic_coefficient * held.pushes());
@@ -76,17 +78,6 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last, bool is_la
         rests_ = whole && last.further == glm::dvec3(0) && stands(held);
         if (open == 1 || turn + 1 == turns_max) return held;
     }
-}
-
-// Of a way along what bears it by so much, the share that friction leaves. 0: it holds.
-double SphereContact::share_past(double way, double pressed) noexcept
-{
-    const double rest = friction_.static_coefficient, slide = friction_.dynamic_coefficient;
-    const double remaining = way - slide * pressed;
-    const bool rounding = remaining <= std::max(distance_rounding, settled * slide * pressed);
-    if (way <= (proxy_.sliding ? slide : rest) * pressed || (rounding && slide > 0)) return 0;
-    proxy_.sliding = proxy_.sliding || !rounding;
-    return remaining / way;
 }
 
 } // namespace haptel::runtime

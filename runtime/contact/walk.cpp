@@ -17,6 +17,7 @@ constexpr double feature = 32;    // nearer to an edge or a vertex than this is 
 constexpr double departure = 64;  // least way that is worth a turn: more than `feature`, else cycles
 constexpr double on_plane = 4;    // nearer to a neighbour's plane than this is on it
 constexpr double clear_above = 2; // height that rounding to the lattice cannot undo
+constexpr double lattice_unit = 1;
 
 // Of a fan whose normals cancel rounding leaves less.
 constexpr double least_outward = 1e-9;
@@ -55,7 +56,6 @@ private:
     Step from_vertex();
 
     Step leave(const StartsOn& start, const glm::dvec3& offset);
-    double share_past_friction(double way, double depth);
     bool slips_into(const SideEdge& to) const;
     Step slide_over_grain(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge);
     double pressed_at_edge(uint32_t face, uint32_t edge, uint32_t side) const;
@@ -68,7 +68,6 @@ private:
     const glm::dvec3& hand_;
     const Friction& friction_;
     ContactCounters& count_;
-    bool moved_ = false;
 };
 
 void Walk::run(uint32_t step_limit)
@@ -84,7 +83,6 @@ void Walk::run(uint32_t step_limit)
         }
     }
     count_.walks_cut += step == Step::again;
-    proxy_.sliding = proxy_.sliding || moved_;
 }
 
 // Onto the lowest feature at the proxy's place: what may be reached next is decided there.
@@ -297,19 +295,6 @@ Walk::Step Walk::leave(const StartsOn& start, const glm::dvec3& offset)
     return Step::stop;
 }
 
-// Friction is a way that ends early: by coefficient times depth, or does not begin. Returns the share of the
-// way that remains; 0: it holds.
-double Walk::share_past_friction(double way, double depth)
-{
-    const double coefficient = proxy_.sliding || moved_ ? friction_.dynamic_coefficient : friction_.static_coefficient;
-    proxy_.pressed = depth;
-    const double remaining = way - friction_.dynamic_coefficient * depth;
-    const bool rounding = remaining <= 1; // lattice unit
-    if (way <= coefficient * depth || (rounding && friction_.dynamic_coefficient > 0)) return 0;
-    moved_ = moved_ || !rounding;
-    return remaining / way;
-}
-
 // Over the face toward the foot of the hand on it, as far as the face goes. Edges from which the walk comes are
 // not crossed again (3: none).
 Walk::Step Walk::slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge)
@@ -318,7 +303,8 @@ Walk::Step Walk::slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_
     const glm::dvec3 normal = surface_.facet_normal(face, side);
     const double height = glm::dot(hand_ - vertex(face, 0), normal);
     const glm::dvec3 way = hand_ - height * normal - proxy_.at;
-    const double share = share_past_friction(glm::length(way), std::max(0.0, -height));
+    proxy_.pressed = std::max(0.0, -height);
+    const double share = share_past(friction_, glm::length(way), proxy_.pressed, lattice_unit, proxy_.sliding);
     proxy_.on = Proxy::On::face;
     proxy_.face = face;
     proxy_.side = side;
@@ -334,18 +320,18 @@ Walk::Step Walk::slide_over_grain(uint32_t face, uint32_t side, uint32_t from_ed
     proxy_.on = Proxy::On::face;
     proxy_.face = face;
     proxy_.side = side;
-    if (!proxy_.sliding && !moved_ && pull.is_held(friction_.static_coefficient)) return Step::stop;
+    if (!proxy_.sliding && pull.is_held(friction_.static_coefficient)) return Step::stop;
     glm::dvec3 slip = pull.slip();
     for (const uint32_t edge : {from_edge, or_edge}) {
         if (edge > 2) continue;
         const glm::dvec3 in = inward(face, edge);
         slip -= std::min(0.0, glm::dot(in, slip)) / glm::dot(in, in) * in;
     }
-    const bool rounding = glm::length(slip) <= 1; // lattice unit
+    const bool rounding = glm::length(slip) <= lattice_unit;
     if (rounding && friction_.dynamic_coefficient > 0) return Step::stop;
     if (from_edge < 3 && glm::dot(inward(face, from_edge), slip) < -glm::length(inward(face, from_edge)))
         return Step::stop; // in a corner, out by one edge where it goes along the other
-    moved_ = moved_ || !rounding;
+    proxy_.sliding = proxy_.sliding || !rounding;
     return go_within(face, side, proxy_.at + slip, from_edge, or_edge);
 }
 
@@ -393,15 +379,14 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
     const double length = glm::length(along);
     const double here = glm::dot(proxy_.at - begin, along) / length;
     const double way = glm::dot(hand_ - begin, along) / length - here;
-    const double pressed = pressed_at_edge(face, edge, side);
+    proxy_.pressed = pressed_at_edge(face, edge, side);
     double eased = 1; // in this direction friction bears so much more or less
     if (friction_.grain.is_there) {
         const glm::dvec3 push = glm::cross(along, glm::cross(begin - hand_, along));
         if (const double across = glm::length(push); across > 0)
             eased = length / FrictionEllipse(friction_.grain, push / across).size(along);
     }
-    const double share = share_past_friction(std::abs(way), eased * pressed);
-    proxy_.pressed = pressed;
+    const double share = share_past(friction_, std::abs(way), eased * proxy_.pressed, lattice_unit, proxy_.sliding);
     proxy_.on = Proxy::On::edge;
     proxy_.face = face;
     proxy_.side = side;
