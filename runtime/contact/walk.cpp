@@ -45,6 +45,10 @@ private:
         return glm::cross(surface_.faces[face].normal, edge_vector(face, edge));
     }
 
+    void put(Proxy::On on, uint32_t face, uint32_t side, uint32_t index = 0)
+    {
+        proxy_.on = on, proxy_.face = face, proxy_.side = side, proxy_.index = index;
+    }
     void settle();
     void step_onto_edge(uint32_t face, uint32_t side, uint32_t edge);
 
@@ -114,15 +118,11 @@ void Walk::step_onto_edge(uint32_t face, uint32_t side, uint32_t edge)
     const double length = glm::length(along);
     const double way = glm::dot(proxy_.at - vertex(face, edge), along) / length;
     const bool near_begin = way < feature, near_end = length - way < feature;
-    proxy_.face = face;
-    proxy_.side = side;
     if (near_begin || near_end) {
-        proxy_.on = Proxy::On::vertex;
-        proxy_.index = near_begin && (!near_end || 2 * way < length) ? edge : next(edge);
+        put(Proxy::On::vertex, face, side, near_begin && (!near_end || 2 * way < length) ? edge : next(edge));
         proxy_.at = vertex(face, proxy_.index);
     } else {
-        proxy_.on = Proxy::On::edge;
-        proxy_.index = edge;
+        put(Proxy::On::edge, face, side, edge);
         proxy_.at = vertex(face, edge) + way / length * along;
     }
 }
@@ -146,8 +146,7 @@ Walk::Step Walk::from_face()
             start.also(link.face());
             continue;
         }
-        proxy_.face = link.face();
-        proxy_.side = link.side();
+        put(Proxy::On::face, link.face(), link.side());
         return Step::again;
     }
     return leave(start, clear_above * surface_.facet_normal(face, proxy_.side));
@@ -305,9 +304,7 @@ Walk::Step Walk::slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_
     const glm::dvec3 way = hand_ - height * normal - proxy_.at;
     proxy_.pressed = std::max(0.0, -height);
     const double share = share_past(friction_, glm::length(way), proxy_.pressed, lattice_unit, proxy_.sliding);
-    proxy_.on = Proxy::On::face;
-    proxy_.face = face;
-    proxy_.side = side;
+    put(Proxy::On::face, face, side);
     if (share == 0) return Step::stop;
     return go_within(face, side, proxy_.at + share * way, from_edge, or_edge);
 }
@@ -317,9 +314,7 @@ Walk::Step Walk::slide_over_grain(uint32_t face, uint32_t side, uint32_t from_ed
 {
     const GrainPull pull(surface_, proxy_.at, hand_, friction_, face, side);
     proxy_.pressed = pull.depth();
-    proxy_.on = Proxy::On::face;
-    proxy_.face = face;
-    proxy_.side = side;
+    put(Proxy::On::face, face, side);
     if (!proxy_.sliding && pull.is_held(friction_.static_coefficient)) return Step::stop;
     glm::dvec3 slip = pull.slip();
     for (const uint32_t edge : {from_edge, or_edge}) {
@@ -387,10 +382,7 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
             eased = length / FrictionEllipse(friction_.grain, push / across).size(along);
     }
     const double share = share_past(friction_, std::abs(way), eased * proxy_.pressed, lattice_unit, proxy_.sliding);
-    proxy_.on = Proxy::On::edge;
-    proxy_.face = face;
-    proxy_.side = side;
-    proxy_.index = edge;
+    put(Proxy::On::edge, face, side, edge);
     if (share == 0) return Step::stop;
     const double there = here + share * way;
     const glm::dvec3 from = proxy_.at;
