@@ -62,7 +62,6 @@ private:
     Step leave(const StartsOn& start, const glm::dvec3& offset);
     bool slips_into(const SideEdge& to) const;
     Step slide_over_grain(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge);
-    double pressed_at_edge(uint32_t face, uint32_t edge, uint32_t side) const;
     Step slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge);
     Step go_within(uint32_t face, uint32_t side, const glm::dvec3& target, uint32_t from_edge, uint32_t or_edge);
     Step slide_along(uint32_t face, uint32_t edge, uint32_t side);
@@ -104,8 +103,7 @@ void Walk::settle()
             nearest = distance;
             edge = i;
         }
-        if (edge == 3) return;
-        step_onto_edge(proxy_.face, proxy_.side, edge);
+        if (edge < 3) step_onto_edge(proxy_.face, proxy_.side, edge);
     } else if (proxy_.on == Proxy::On::edge) {
         step_onto_edge(proxy_.face, proxy_.side, proxy_.index);
     }
@@ -333,7 +331,7 @@ Walk::Step Walk::slide_over_grain(uint32_t face, uint32_t side, uint32_t from_ed
 // Over the face to the target in its plane, at most to its edges.
 Walk::Step Walk::go_within(uint32_t face, uint32_t side, const glm::dvec3& target, uint32_t from_edge, uint32_t or_edge)
 {
-    double exit_at = 1;
+    double exit_at = HUGE_VAL;
     uint32_t exit = 3;
     for (uint32_t i = 0; i < 3; ++i) {
         if (i == from_edge || i == or_edge) continue;
@@ -342,7 +340,7 @@ Walk::Step Walk::go_within(uint32_t face, uint32_t side, const glm::dvec3& targe
         if (end >= 0) continue;
         const double begin = std::max(0.0, glm::dot(in, proxy_.at - vertex(face, i)));
         const double at = begin / (begin - end);
-        if (at >= exit_at && exit != 3) continue;
+        if (at >= exit_at) continue;
         exit_at = at;
         exit = i;
     }
@@ -352,34 +350,28 @@ Walk::Step Walk::go_within(uint32_t face, uint32_t side, const glm::dvec3& targe
     return Step::again;
 }
 
-// How deep the hand is below an edge, as friction feels it: in a groove below both its walls together.
-double Walk::pressed_at_edge(uint32_t face, uint32_t edge, uint32_t side) const
-{
-    const glm::dvec3& begin = vertex(face, edge);
-    const glm::dvec3 along = edge_vector(face, edge), from_hand = begin - hand_;
-    const double depth = glm::length(glm::cross(from_hand, along)) / glm::length(along);
-    const SideEdge link = surface_.faces[face].link[edge][side];
-    const glm::dvec3 here = surface_.facet_normal(face, side);
-    const glm::dvec3 both = here + surface_.facet_normal(link.face(), link.side());
-    const double square = glm::dot(both, both);
-    const bool groove = glm::dot(vertex(link.face(), previous(link.edge())) - begin, here) > 0;
-    return groove && square > sharp * sharp ? std::max(depth, 2 * glm::dot(from_hand, both) / square) : depth;
-}
-
 // Along the edge toward the foot of the hand on it, at most to its end.
 Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
 {
     const glm::dvec3& begin = vertex(face, edge);
-    const glm::dvec3 along = edge_vector(face, edge);
+    const glm::dvec3 along = edge_vector(face, edge), from_hand = begin - hand_, across = glm::cross(from_hand, along);
     const double length = glm::length(along);
     const double here = glm::dot(proxy_.at - begin, along) / length;
     const double way = glm::dot(hand_ - begin, along) / length - here;
-    proxy_.pressed = pressed_at_edge(face, edge, side);
+    // How deep the hand is, as friction feels it: in a groove below both its walls together.
+    proxy_.pressed = glm::length(across) / length;
+    const SideEdge link = surface_.faces[face].link[edge][side];
+    const glm::dvec3 normal = surface_.facet_normal(face, side);
+    const glm::dvec3 both = normal + surface_.facet_normal(link.face(), link.side());
+    const double square = glm::dot(both, both);
+    const bool groove = glm::dot(vertex(link.face(), previous(link.edge())) - begin, normal) > 0;
+    if (groove && square > sharp * sharp)
+        proxy_.pressed = std::max(proxy_.pressed, 2 * glm::dot(from_hand, both) / square);
     double eased = 1; // in this direction friction bears so much more or less
     if (friction_.grain.is_there) {
-        const glm::dvec3 push = glm::cross(along, glm::cross(begin - hand_, along));
-        if (const double across = glm::length(push); across > 0)
-            eased = length / FrictionEllipse(friction_.grain, push / across).size(along);
+        const glm::dvec3 push = glm::cross(along, across);
+        if (const double pushes = glm::length(push); pushes > 0)
+            eased = length / FrictionEllipse(friction_.grain, push / pushes).size(along);
     }
     const double share = share_past(friction_, std::abs(way), eased * proxy_.pressed, lattice_unit, proxy_.sliding);
     put(Proxy::On::edge, face, side, edge);
