@@ -19,6 +19,7 @@ struct Shaft {
     glm::dvec3 tip{0}, tail{0};
 
     glm::dvec3 at(double share) const { return tip + share * (tail - tip); }
+    Shaft rounded() const { return {glm::round(tip), glm::round(tail)}; }
     // A push of its point at `share`, as its ends feel it.
     static Shaft pushed_at(double share, const glm::dvec3& push) { return {(1 - share) * push, share * push}; }
 
@@ -62,6 +63,8 @@ struct HalfSpace {
 struct ShaftRow {
     glm::dvec3 normal{0}; // unit
     double offset = 0, arm = 0;
+
+    Shaft pushed(double by) const { return {(1 - arm) * by * normal, arm * by * normal}; }
 };
 
 // Which ends may move. An end that does not give stays where it is, whatever pushes it.

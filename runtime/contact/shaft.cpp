@@ -85,7 +85,7 @@ bool ShaftMove::meets(const glm::dvec3& edge0, const glm::dvec3& edge1, double b
     for (int i = 0; i < count && t[i] < before; ++i) {
         const glm::dvec3 tip = from_.tip + t[i] * way_;
         const Passing at = passing({tip, tip + along_ + t[i] * turn_}, edge0, edge1);
-        if (at.parallel || !at.within(0, 0, shaft_tolerance::reach)) continue;
+        if (at.parallel || !at.within(0, shaft_tolerance::reach)) continue;
         const double slope = c1 + 2 * c2 * t[i];
         meeting.time = t[i];
         meeting.side = slope > 0 ? -1 : 1;

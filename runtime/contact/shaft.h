@@ -41,9 +41,9 @@ struct Passing {
     glm::dvec3 edge_point{0};
 
     // Whether shaft and edge pass each other, or are off their ends by no more than that.
-    bool within(double off_tip, double off_tail, double off_edge) const
+    bool within(double off_shaft, double off_edge) const
     {
-        return on_shaft * shaft_length >= -off_tip && (on_shaft - 1) * shaft_length <= off_tail &&
+        return on_shaft * shaft_length >= -off_shaft && (on_shaft - 1) * shaft_length <= off_shaft &&
                on_edge >= -off_edge && on_edge <= edge_length + off_edge;
     }
 };

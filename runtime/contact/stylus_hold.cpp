@@ -145,8 +145,7 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
             for (std::size_t k = 0; k < held.count; ++k) {
                 const ShaftRow& row = rows[held.active[k]];
                 if (held.active[k] < tip_rows_.count + tail_rows_.count) continue;
-                aim.tip += (1 - row.arm) * held.push[k] * row.normal;
-                aim.tail += row.arm * held.push[k] * row.normal;
+                aim += row.pushed(held.push[k]);
             }
             of_tip = tip.drags() && !(of_tip && tail.drags());
             if (of_tip)
@@ -168,12 +167,11 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
 // slides: where it rests is found for a hand that is as much nearer.
 Shaft StylusContact::on_the_way(const Shaft& to, double share, const FrictionOfEnds& ends) noexcept
 {
-    const auto rounded = [](const Shaft& at) { return Shaft{glm::round(at.tip), glm::round(at.tail)}; };
     const auto between = [share](const glm::dvec3& from, const glm::dvec3& there) {
         return from + share * (there - from);
     };
-    const Shaft part{between(shaft_.tip, to.tip), between(shaft_.tail, to.tail)};
-    if (share == 1 || side_count_ == 0) return rounded(part);
+    const Shaft part = shaft_ + share * (to - shaft_);
+    if (share == 1 || side_count_ == 0) return part.rounded();
     const Shaft whole = extended(shaft_);
     const EndsGive gives{!ends.tip.sticks, !ends.tail.sticks};
     const Shaft hand{gives.tip ? between(whole.tip, hand_.tip + ends.tip.lag) : ends.tip.at,
@@ -193,7 +191,7 @@ Shaft StylusContact::on_the_way(const Shaft& to, double share, const FrictionOfE
     };
     const bool known = is_known(begin_ == 0, *tip_, tip_rows_, shaft_.tip, at.tip) &&
                        is_known(end_ == 1, *tail_, tail_rows_, shaft_.tail, at.tail);
-    return rounded(known ? at : part);
+    return (known ? at : part).rounded();
 }
 
 void StylusContact::resolve(const EndsFriction& friction) noexcept
@@ -271,9 +269,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
 // stiffness times its square.
 double StylusContact::away(const Shaft& part) const noexcept
 {
-    const Shaft whole = extended(part);
-    const glm::dvec3 tip = whole.tip - hand_.tip, tail = whole.tail - hand_.tail;
-    return std::sqrt(glm::dot(tip, tip) + glm::dot(tail, tail));
+    return length(extended(part) - hand_);
 }
 
 // What holds it where it is. No more is held than the springs are drawn: rows that it has not come to begin here. It is
@@ -284,7 +280,7 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
     const Shaft whole = extended(shaft_);
     // What a line may come to that a ball does not. Where there is too much all of it is left.
     if (!look(rest_gap, {}, false)) {
-        left_ = {whole.tip - hand_.tip, whole.tail - hand_.tail};
+        left_ = whole - hand_;
         tip_->tell_held(hand_.tip, {}, {}, glm::dvec3(0));
         tail_->tell_held(hand_.tail, {}, {}, glm::dvec3(0));
         return;
@@ -310,7 +306,7 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
     }
     // In a fold that a line gets into, and a ball does not, more than the radius is left.
     const double off = farther(whole, held.at), left = off > unfelt_most ? 1 - unfelt_most / off : 0.0;
-    left_ = {left * (whole.tip - held.at.tip), left * (whole.tail - held.at.tail)};
+    left_ = left * (whole - held.at);
     const double drawn = away(shaft_);
     Shaft aim = hand_;
     std::array<uint32_t, 6> planes[2];
@@ -320,14 +316,12 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
         const uint32_t i = held.active[k];
         const double push = held.push[k];
         if (push >= opposed_most * drawn) { // what they push together is told as what is left
-            left_.tip += (1 - rows[i].arm) * push * rows[i].normal;
-            left_.tail += rows[i].arm * push * rows[i].normal;
+            left_ += rows[i].pushed(push);
             continue;
         }
         if (i >= of_ends) {
             sides_[i - of_ends].push = push;
-            aim.tip += (1 - rows[i].arm) * push * rows[i].normal;
-            aim.tail += rows[i].arm * push * rows[i].normal;
+            aim += rows[i].pushed(push);
             continue;
         }
         const int end = i >= of_tip;

@@ -163,7 +163,7 @@ void StylusContact::see(uint32_t face, uint32_t edge, const Shaft& to) noexcept
     const Passing lines = passing(to, a, b);
     if (lines.parallel) return;
     const int sign = -side_of_line(glm::round(to.tip), glm::round(to.tail), a, b);
-    if (!lines.within(0, 0, rest_gap)) return;
+    if (!lines.within(0, rest_gap)) return;
     const double beyond = std::max({0.0, -lines.on_edge, lines.on_edge - lines.edge_length});
     const double height = std::hypot(lines.height, beyond);
     if (!(height < close_.height)) return;
@@ -262,7 +262,7 @@ bool StylusContact::blocked(const Shaft& to, const SweptRegion& swept, Obstacle&
         for (uint32_t edge = 0; edge < 3; ++edge) {
             const glm::dvec3 &a = edge_end(crossing->face, edge, 0), &b = edge_end(crossing->face, edge, 1);
             const Passing then = passing(to, a, b), now = passing(from, a, b);
-            if (then.parallel || now.parallel || !then.within(0, 0, reach)) continue;
+            if (then.parallel || now.parallel || !then.within(0, reach)) continue;
             if (std::fabs(then.height) >= nearest) continue;
             if (is_below_a_side(corners[edge], corners[next(edge)], to) != below) continue;
             nearest = std::fabs(then.height);
@@ -283,8 +283,7 @@ void StylusContact::approach(const Shaft& to, const Obstacle& obstacle) noexcept
     if (!(height > 2 * rest_gap)) return;
     double time = obstacle.time * (1 - rest_gap / height);
     for (int attempt = 0; attempt < 3; ++attempt, time *= 0.5) {
-        const Shaft there{glm::round(shaft_.tip + time * (to.tip - shaft_.tip)),
-                          glm::round(shaft_.tail + time * (to.tail - shaft_.tail))};
+        const Shaft there = (shaft_ + time * (to - shaft_)).rounded();
         Obstacle other;
         if (blocked(there, swept_to(there), other)) continue;
         shaft_ = there;
@@ -317,13 +316,12 @@ void StylusContact::let_go_of_ended() noexcept
         Side& side = sides_[i];
         const Passing now = passing_of(side, shaft_);
         // Met beyond an end of the shaft, as by a tip that goes over a border: only now is it seen on which side.
-        const int exact = now.parallel || !now.within(0, 0, 0)
+        const int exact = now.parallel || !now.within(0, 0)
                               ? 0
                               : -side_of_line(shaft_.tip, shaft_.tail, edge_end(side.face, side.edge, 0),
                                               edge_end(side.face, side.edge, 1));
         if (exact != 0) side.sign = exact;
-        const bool over =
-            !now.parallel && now.within(let_go_by_end, let_go_by_end, let_go) && std::fabs(now.height) < 4 * rest_gap;
+        const bool over = !now.parallel && now.within(let_go_by_end, let_go) && std::fabs(now.height) < 4 * rest_gap;
         const bool ahead = !side.reached && (side.fresh || side.push > 0);
         side.reached |= over;
         if (!over && !ahead && !meets_fresh(side)) drop(i);
