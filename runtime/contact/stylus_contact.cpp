@@ -146,9 +146,8 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
     stuck_ticks_ = 0;
     shaft_ = within(tip_->proxy().touches() ? tip_->proxy().at : hand_.tip, hand_.tail);
     if (begin_ == 0) shaft_.tip = glm::round(tip_->proxy().at);
-    tracked_ = first && !crosses;
-    if (!tracked_)
-        tracked_ = !first_crossing(surface(), shaft_.tip, shaft_.tail, StartsOn::nothing(), crossing, counters_);
+    tracked_ = (first && !crosses) ||
+               !first_crossing(surface(), shaft_.tip, shaft_.tail, StartsOn::nothing(), crossing, counters_);
 }
 
 // Where nothing is near nothing is touched: to the hand, if so.

@@ -170,7 +170,7 @@ private:
     std::array<Side, sides_max> sides_;
     uint32_t side_count_ = 0;
     std::array<ShaftRow, 2 * planes_max + sides_max> rows_; // of the tip, the tail, the sides
-    uint32_t row_count_ = 0;
+    uint32_t row_count_ = 0;                                // of both ends
     EndRows tip_rows_, tail_rows_;
     Shaft left_; // of what the springs are drawn by, what no row accounts for
     Clear clear_;

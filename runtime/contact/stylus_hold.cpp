@@ -64,7 +64,6 @@ bool StylusContact::look(double reach, const FrictionOfEnds& ends, bool is_first
 // Rows of the sides, turned with the shaft, behind those of the ends.
 std::span<const ShaftRow> StylusContact::turn_sides(const Shaft& at, double gap) noexcept
 {
-    const uint32_t first = tip_rows_.count + tail_rows_.count;
     for (uint32_t i = 0; i < side_count_; ++i) {
         Side& side = sides_[i];
         if (const Passing here = passing_of(side, at); !here.parallel) {
@@ -72,9 +71,9 @@ std::span<const ShaftRow> StylusContact::turn_sides(const Shaft& at, double gap)
             side.point = here.edge_point;
             side.share = begin_ + here.on_shaft * (end_ - begin_);
         }
-        rows_[first + i] = {side.normal, glm::dot(side.normal, side.point) + gap, side.share};
+        rows_[row_count_ + i] = {side.normal, glm::dot(side.normal, side.point) + gap, side.share};
     }
-    return {rows_.data(), first + side_count_};
+    return {rows_.data(), row_count_ + side_count_};
 }
 
 // What bears an end: the planes by which a stylus without friction would be held.
@@ -144,7 +143,7 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
             Shaft aim = hand_;
             for (std::size_t k = 0; k < held.count; ++k) {
                 const ShaftRow& row = rows[held.active[k]];
-                if (held.active[k] < tip_rows_.count + tail_rows_.count) continue;
+                if (held.active[k] < row_count_) continue;
                 aim += row.pushed(held.push[k]);
             }
             of_tip = tip.drags() && !(of_tip && tail.drags());
@@ -230,8 +229,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         to = {held.at.at(begin_), held.at.at(end_)};
         for (Side& side : std::span(sides_.data(), side_count_)) side.push = 0;
         for (std::size_t k = 0; k < held.count; ++k)
-            if (const uint32_t first = tip_rows_.count + tail_rows_.count; held.active[k] >= first)
-                sides_[held.active[k] - first].push = held.push[k];
+            if (held.active[k] >= row_count_) sides_[held.active[k] - row_count_].push = held.push[k];
         const double known = known_share(to, stride, held, ends), share = std::min(most, known);
         const Shaft next = on_the_way(to, share, ends);
         const double step = farther(next, shaft_);
@@ -290,9 +288,9 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
     const std::span<ShaftRow> changed(rows_.data(), rows.size());
     if (!settled)
         for (ShaftRow& row : changed) row.offset = std::min(row.offset, glm::dot(row.normal, whole.at(row.arm)));
-    const uint32_t of_tip = tip_rows_.count, of_ends = of_tip + tail_rows_.count;
+    const uint32_t of_tip = tip_rows_.count;
     for (uint32_t i = 0; i < rows.size(); ++i)
-        changed[i].offset -= i < of_tip ? tip_->radius() : i < of_ends ? tail_->radius() : rest_gap;
+        changed[i].offset -= i < of_tip ? tip_->radius() : i < row_count_ ? tail_->radius() : rest_gap;
     Projection<Shaft> held;
     Shaft at = shaft_;
     for (int turn = 0; turn < turns_max; ++turn) { // what is told is told by the rows that were projected last
@@ -319,8 +317,8 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
             left_ += rows[i].pushed(push);
             continue;
         }
-        if (i >= of_ends) {
-            sides_[i - of_ends].push = push;
+        if (i >= row_count_) {
+            sides_[i - row_count_].push = push;
             aim += rows[i].pushed(push);
             continue;
         }

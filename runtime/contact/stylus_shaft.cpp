@@ -66,9 +66,9 @@ double StylusContact::known_share(const Shaft& to, double stride, const Projecti
     if (begin_ == 0) reaches(*tip_, tip_rows_, shaft_.tip, to.tip, ends.tip.friction.static_coefficient > 0);
     if (end_ == 1) reaches(*tail_, tail_rows_, shaft_.tail, to.tail, ends.tail.friction.static_coefficient > 0);
     for (std::size_t k = 0; k < held.count; ++k) {
-        const uint32_t row = held.active[k], first = tip_rows_.count + tail_rows_.count;
-        if (row < first) continue;
-        const Passing now = passing_of(sides_[row - first], shaft_), then = passing_of(sides_[row - first], to);
+        if (held.active[k] < row_count_) continue;
+        const Side& side = sides_[held.active[k] - row_count_];
+        const Passing now = passing_of(side, shaft_), then = passing_of(side, to);
         if (now.parallel || then.parallel) continue;
         const auto stay = [&](double from, double there, double low, double high) {
             const double over = past_the_end * std::fabs(there - from);
@@ -86,8 +86,6 @@ double StylusContact::known_share(const Shaft& to, double stride, const Projecti
 // Straight to there. False: it met something on its way, which now is a contact, or the way is too long.
 bool StylusContact::move(const Shaft& to) noexcept
 {
-    close_ = {};
-    close_.height = near_enough;
     met_ = {};
     const SweptRegion swept = swept_to(to);
     if (!find_near(swept)) return false;
@@ -116,8 +114,6 @@ bool StylusContact::go_apart(const EndsFriction& friction) noexcept
     if (!tail_rests || !tip_rests) return gives_up();
     const Shaft to{tip_->proxy().at, tail_->proxy().at};
     const auto goes = [&](const Shaft& there) {
-        close_ = {};
-        close_.height = near_enough;
         if (there != shaft_)
             if (const SweptRegion swept = swept_to(there);
                 !find_near(swept) || blocked(there, swept, met_) || close_.side != 0)
@@ -229,6 +225,7 @@ bool StylusContact::blocked(const Shaft& to, const SweptRegion& swept, Obstacle&
     bool met = false;
     obstacle.time = 1;
     obstacle.exact = false;
+    close_ = {.height = near_enough};
     const Shaft& from = shaft_;
     const ShaftMove move(from, to);
     std::optional<Crossing> crossing;
@@ -302,11 +299,7 @@ void StylusContact::touch(const Obstacle& obstacle) noexcept
                                             [](const Side& x, const Side& y) { return x.push < y.push; });
         drop(static_cast<uint32_t>(least - sides_.begin()));
     }
-    Side& side = sides_[side_count_++];
-    side = {};
-    side.face = obstacle.face;
-    side.edge = obstacle.edge;
-    side.sign = obstacle.side;
+    sides_[side_count_++] = {.face = obstacle.face, .edge = obstacle.edge, .sign = double(obstacle.side)};
 }
 
 // Of edges that the shaft does not pass over any more, or does not come to pass over.
