@@ -14,11 +14,37 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <utility>
 
 namespace haptel::runtime {
 
-// Free space around the hand is worth looking for if it needs so many ticks to cross it.
-inline constexpr double ticks_per_clearance = 4;
+// Free space around a probe: no triangle is within `radius` of where it was. While it stays inside there is nothing to
+// collide with; once it has left, its way back is not known. Lattice units.
+template <class Place>
+struct Clearance {
+    Place at{};
+    double radius = 0, next_radius = 0.25 * Lattice::extent; // to try when it was left
+    double unspared = -1; // the way of a free tick that it did not spare a query; < 0: there was none
+
+    bool spares(double from_there) noexcept
+    {
+        if (!(from_there < radius)) radius = 0;
+        return radius > 0;
+    }
+    // Between two ticks, of a probe that is free `here`: free_within(radius) says how much of that is free. Larger
+    // after success and smaller after failure, and not at all where four ticks would cross even a success.
+    template <class FreeWithin>
+    void look(const Place& here, FreeWithin&& free_within) noexcept
+    {
+        const double step = std::exchange(unspared, -1);
+        if (step < 0) return;
+        const bool pays = next_radius >= 4 * step;
+        if (pays) at = here, radius = free_within(next_radius);
+        next_radius = !pays        ? 1.1 * next_radius
+                      : radius > 0 ? std::min(1.4 * radius, Lattice::extent)
+                                   : 0.5 * next_radius;
+    }
+};
 
 class EndContact {
 public:

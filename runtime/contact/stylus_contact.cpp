@@ -43,7 +43,6 @@ void StylusContact::reset() noexcept
     clear_ = {};
     reached_ = {};
     stuck_ticks_ = 0;
-    unspared_ = -1;
     counters_ = {};
 }
 
@@ -59,7 +58,7 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
         tip_->tick(tip_m, friction.tip);
         return tip_->contact();
     }
-    unspared_ = -1;
+    clear_.unspared = -1;
     left_ = {};
     const bool had_tip = begin_ == 0, had_tail = end_ == 1;
     has_shaft_ = take(tip_m, tail_m);
@@ -155,11 +154,10 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
 {
     if (side_count_ > 0 || tip_->proxy().touches() || tail_->proxy().touches()) return false;
     const Shaft to = within(hand_.tip, hand_.tail);
-    if (!(farther(clear_.at, to) < clear_.radius)) {
+    if (!clear_.spares(farther(clear_.at, to))) {
         ++counters_.sweeps;
-        clear_.radius = 0;
         if (!swept_to(to).is_empty(*surface().tree)) return false;
-        unspared_ = farther(shaft_, to);
+        clear_.unspared = farther(shaft_, to);
     }
     shaft_ = to;
     reached_ = hand_;
@@ -168,22 +166,12 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
     return true;
 }
 
-// Tries larger regions after success and smaller ones after failure, and none while even a success would not pay.
 void StylusContact::look_around() noexcept
 {
-    const double step = std::exchange(unspared_, -1);
-    if (step < 0) return;
-    if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
-    if (clear_.next_radius < ticks_per_clearance * step) {
-        clear_.next_radius *= 1.1;
-    } else if (SweptRegion(shaft_.tip, shaft_.tail, shaft_.tip, shaft_.tail, clear_.next_radius)
-                   .is_empty(*surface().tree)) {
-        clear_.at = shaft_;
-        clear_.radius = clear_.next_radius;
-        clear_.next_radius = std::min(1.4 * clear_.next_radius, Lattice::extent);
-    } else {
-        clear_.next_radius *= 0.5;
-    }
+    clear_.look(shaft_, [&](double radius) {
+        const SweptRegion around(shaft_.tip, shaft_.tail, shaft_.tip, shaft_.tail, radius);
+        return around.is_empty(*surface().tree) ? radius : 0.0;
+    });
 }
 
 void StylusContact::report() noexcept

@@ -106,12 +106,6 @@ private:
     struct FrictionOfEnds {
         EndFriction tip, tail;
     };
-    // A region known to be empty: the shaft is free while each end is within the radius of where it was.
-    struct Clear {
-        Shaft at;
-        double radius = 0, next_radius = 0;
-    };
-
     // Of an end in rows_, and how far they hold for it.
     struct EndRows {
         uint32_t first = 0, count = 0;
@@ -172,9 +166,8 @@ private:
     std::array<ShaftRow, 2 * planes_max + sides_max> rows_; // of the tip, the tail, the sides
     uint32_t row_count_ = 0;                                // of both ends
     EndRows tip_rows_, tail_rows_;
-    Shaft left_; // of what the springs are drawn by, what no row accounts for
-    Clear clear_;
-    double unspared_ = -1;                        // as a point's
+    Shaft left_;                                  // of what the springs are drawn by, what no row accounts for
+    Clearance<Shaft> clear_;                      // of each end
     std::array<Contact, sides_max + 8> contacts_; // of each end three, and what is left
     uint32_t contact_count_ = 0;
     std::array<uint32_t, triangles_per_move> near_; // triangles, of the way that was looked at last

@@ -24,7 +24,6 @@ void WalkContact::reset() noexcept
     counters_ = {};
     proxy_ = {};
     clear_ = {};
-    unspared_ = -1;
     placed_ = false;
 }
 
@@ -49,12 +48,13 @@ void WalkContact::follow(const glm::dvec3& hand_m) noexcept
     if (!take(hand_m)) return;
     placed_ = true;
     proxy_.at = hand_;
+    clear_.radius = 0; // it may be out of it
     describe();
 }
 
 double WalkContact::gap_m(const glm::dvec3& hand_m) const noexcept
 {
-    const double in_ball = clear_.radius - glm::distance(hand_, clear_.centre);
+    const double in_ball = clear_.radius - glm::distance(hand_, clear_.at);
     return std::max(surface_->gap_to_box_m(hand_m, hand_m), in_ball * surface_->lattice.unit_m);
 }
 
@@ -62,6 +62,7 @@ double WalkContact::gap_m(const glm::dvec3& hand_m) const noexcept
 bool WalkContact::take(const glm::dvec3& hand_m) noexcept
 {
     if (!finite(hand_m)) return placed_;
+    clear_.unspared = -1;
     before_ = std::exchange(true_hand_, surface_->lattice.units(hand_m));
     hand_ = Lattice::snap_units(true_hand_);
     return true;
@@ -70,7 +71,7 @@ bool WalkContact::take(const glm::dvec3& hand_m) noexcept
 void WalkContact::move_freely(const glm::dvec3& hand) noexcept
 {
     const double step = glm::distance(hand, proxy_.at);
-    if (step == 0 || glm::distance(hand, clear_.centre) < clear_.radius) {
+    if (step == 0 || clear_.spares(glm::distance(hand, clear_.at))) {
         proxy_.at = hand;
         return;
     }
@@ -84,26 +85,15 @@ void WalkContact::move_freely(const glm::dvec3& hand) noexcept
         first_crossing(*surface_, from, to, StartsOn::nothing(), crossing, counters_)) {
         land(*surface_, proxy_, crossing, from, to);
         proxy_.sliding = false; // static friction holds what comes down
-        clear_.radius = 0;
         return;
     }
     proxy_.at = hand;
-    unspared_ = step;
+    clear_.unspared = step;
 }
 
-// Looks somewhat farther than the last ball was large, and not at all where the hand would leave a ball at once.
 void WalkContact::look_around() noexcept
 {
-    const double step = std::exchange(unspared_, -1);
-    if (step < 0 || proxy_.touches()) return;
-    clear_.radius = 0;
-    if (clear_.next_radius < ticks_per_clearance * step) {
-        clear_.next_radius = clear_.next_radius == 0 ? 0.25 * Lattice::extent : 1.1 * clear_.next_radius;
-        return;
-    }
-    clear_.centre = proxy_.at;
-    clear_.radius = clearance(*surface_, proxy_.at, clear_.next_radius);
-    clear_.next_radius = glm::clamp(1.4 * clear_.radius, 1.0, Lattice::extent);
+    clear_.look(proxy_.at, [&](double radius) { return clearance(*surface_, proxy_.at, radius); });
 }
 
 void WalkContact::describe() noexcept

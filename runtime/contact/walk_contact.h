@@ -17,13 +17,6 @@
 
 namespace haptel::runtime {
 
-// A ball that holds no triangle: while the hand is inside, there is nothing to collide with. Lattice units.
-struct Clearance {
-    glm::dvec3 centre{0};
-    double radius = 0;
-    double next_radius = 0; // to try when the hand has left the ball; 0: not tried yet
-};
-
 class WalkContact final : public EndContact {
 public:
     explicit WalkContact(std::shared_ptr<const Surface> surface);
@@ -48,8 +41,7 @@ private:
     glm::dvec3 hand_{0};                  // lattice units, and below: a lattice point of the workspace
     glm::dvec3 true_hand_{0}, before_{0}; // neither rounded nor clamped: the hand in this tick and in the last
     bool placed_ = false;
-    Clearance clear_;
-    double unspared_ = -1; // the hand's way in a free tick that no clearance spared a query; < 0: there was none
+    Clearance<glm::dvec3> clear_;
 };
 
 } // namespace haptel::runtime
