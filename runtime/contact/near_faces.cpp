@@ -69,11 +69,8 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
         corners_[found] = {a, b, c};
         found += !(ahead(plane) > radius + distance_rounding);
     }
-    faces_.resize(found);
-    planes_.resize(found);
-    corners_.resize(found);
     laid_.assign(found, 0);
-    found_ = found;
+    keep(found_ = found);
     return all;
 }
 
@@ -81,17 +78,13 @@ bool NearFaces::find_groups(const glm::dvec3& centre, double ball_radius, double
 {
     picked_.clear();
     place_of_.clear();
-    faces_.clear();
-    planes_.clear();
-    corners_.clear();
-    laid_.clear();
+    keep(0);
     see_from(centre);
     renewed_at_ = found_at_ = centre;
     renewed_since_ = centres_;
     radius_ = ball_radius;
     found_within_ = radius;
     const bool all = add_behind(0);
-    if (!all) faces_.clear(), planes_.clear(), corners_.clear(), laid_.clear();
     found_ = faces_.size();
     return all;
 }
@@ -114,7 +107,7 @@ bool NearFaces::add_behind(uint32_t node) noexcept
             children[met++] = tree.nodes()[next].child[std::countr_zero(bits)];
         boxes_ += met;
         if (faces_.size() + met > faces_.capacity()) {
-            faces_.resize(before), planes_.resize(before), corners_.resize(before), laid_.resize(before);
+            keep(before);
             return false;
         }
         // They are far apart in memory: all are asked for before the first is waited for.

@@ -99,6 +99,10 @@ private:
     static constexpr uint32_t group = BoxTree::is_face; // of a number in faces_: a node
 
     bool is_group(std::size_t place) const noexcept { return faces_[place] & group; }
+    void keep(std::size_t count) noexcept // the first of those known
+    {
+        faces_.resize(count), planes_.resize(count), corners_.resize(count), laid_.resize(count);
+    }
     bool add_behind(uint32_t node) noexcept;
     bool look_into(std::size_t place) noexcept;
     template <class Visit>
