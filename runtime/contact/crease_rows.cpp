@@ -14,15 +14,16 @@ namespace {
 // What rounding alone leaves to a piece is none.
 constexpr double least_share = 1e-12;
 
+// Most are on facets, and are asked nothing more.
 bool may_be_on_crease(const Surface& surface, const Contact& contact)
 {
-    return !contact.by_shaft && !contact.unsettled && !contact.on_crease && contact.normal != contact.facet_normal &&
+    return contact.normal != contact.facet_normal && !contact.by_shaft && !contact.unsettled && !contact.on_crease &&
            on_crease(surface, contact.face, contact.side, contact.barycentric);
 }
 
 } // namespace
 
-std::span<const Contact> CreaseRows::parted(const Surface& surface, std::span<const Contact> contacts) noexcept
+std::span<const Contact> CreaseRows::of(const Surface& surface, std::span<const Contact> contacts) noexcept
 {
     const auto is_one = [&](const Contact& contact) { return may_be_on_crease(surface, contact); };
     if (std::none_of(contacts.begin(), contacts.end(), is_one)) return contacts;

@@ -6,7 +6,6 @@
 
 #include "runtime/contact/contact.h"
 
-#include <algorithm>
 #include <array>
 #include <span>
 
@@ -19,16 +18,11 @@ class CreaseRows {
 public:
     static constexpr std::size_t rows_most = 24; // of 16 contacts, four of them on creases
 
-    std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts) noexcept
-    { // most are on facets: a tick asks nothing more of them
-        const auto on_facet = [](const Contact& contact) { return contact.normal == contact.facet_normal; };
-        return std::all_of(contacts.begin(), contacts.end(), on_facet) ? contacts : parted(surface, contacts);
-    }
+    std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts) noexcept;
 
 private:
     static constexpr std::size_t facets_most = 32;
 
-    std::span<const Contact> parted(const Surface& surface, std::span<const Contact> contacts) noexcept;
     void add(const Surface& surface, const Contact& contact, std::size_t room) noexcept;
 
     std::array<Contact, rows_most> rows_;
