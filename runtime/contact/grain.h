@@ -39,6 +39,7 @@ Grain turned(const Grain& grain, const glm::dmat3& rotation) noexcept;
 // In the plane of a unit normal. Lengths are in any unit.
 class FrictionEllipse {
 public:
+    FrictionEllipse() noexcept {} // none yet
     FrictionEllipse(const Grain& grain, const glm::dvec3& normal) noexcept;
 
     // What a vector of the plane becomes where the ellipse becomes the unit disc; what is across the plane is left out.

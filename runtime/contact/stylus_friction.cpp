@@ -24,8 +24,7 @@ void EndFriction::take_hold(bool of_sides) noexcept
     if (!touches) lag = glm::dvec3(0);
     sticks = of_sides && drags() && !slips;
     limit_before_ = limit_;
-    ellipse.reset();
-    if (drags() && friction.grain.is_there) ellipse.emplace(friction.grain, normal);
+    if (drags()) ellipse = FrictionEllipse(friction.grain, normal);
 }
 
 double EndFriction::follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept
@@ -34,7 +33,7 @@ double EndFriction::follow(const glm::dvec3& aim, const glm::dvec3& held, const 
     const double found = coefficient() * bears * glm::clamp(height - unfelt, 0.0, deepest);
     if (sticks) {
         lag = at - aim - height * normal;
-        if (size(lag) <= found && height <= deepest) return 0;
+        if (ellipse.size(lag) <= found && height <= deepest) return 0;
         lag = glm::dvec3(0);
         sticks = false;
         slips = slides = true;
@@ -68,28 +67,18 @@ bool EndFriction::oppose(const glm::dvec3& way, const glm::dmat3& give, double m
 {
     lag = glm::dvec3(0);
     if (!(most > 0)) return true;
-    const glm::dvec3 off = std::fabs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 of_plane = glm::normalize(glm::cross(normal, off));
-    const glm::dvec3 u = ellipse ? ellipse->half_axis(0) : of_plane,
-                     v = ellipse ? ellipse->half_axis(1) : glm::cross(normal, of_plane);
+    const glm::dvec3 &u = ellipse.half_axis(0), &v = ellipse.half_axis(1);
     const double uu = glm::dot(u, give * u), uv = glm::dot(u, give * v), vv = glm::dot(v, give * v);
     const double half = 0.5 * (uu - vv), root = std::sqrt(half * half + uv * uv);
-    glm::dvec3 axis[2] = {u, v};
-    if (root > 0 && ellipse) {
-        const glm::dvec2 first = glm::normalize(half > 0 ? glm::dvec2(half + root, uv) : glm::dvec2(uv, root - half));
-        axis[0] = first.x * u + first.y * v;
-        axis[1] = first.x * v - first.y * u;
-    } else if (root > 0) {
-        axis[0] = glm::normalize(half > 0 ? (half + root) * u + uv * v : uv * u + (root - half) * v);
-        axis[1] = glm::cross(normal, axis[0]);
-    }
+    glm::dvec2 first(1, 0);
+    if (root > 0) first = glm::normalize(half > 0 ? glm::dvec2(half + root, uv) : glm::dvec2(uv, root - half));
+    const glm::dvec3 axis[2] = {first.x * u + first.y * v, first.x * v - first.y * u};
     const double gives[2] = {std::max(least_give, 0.5 * (uu + vv) + root),
                              std::max(least_give, 0.5 * (uu + vv) - root)};
     const double ways[2] = {glm::dot(way, axis[0]), glm::dot(way, axis[1])};
     double along[2];
     const double slip = least_in_disc(gives, ways, most, along);
-    for (int i = 0; i < 2; ++i)
-        if (ways[i] != 0) lag += along[i] * axis[i];
+    lag = along[0] * axis[0] + along[1] * axis[1];
     return slip > 0;
 }
 

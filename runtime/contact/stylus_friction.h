@@ -9,8 +9,6 @@
 
 #include <glm/glm.hpp>
 
-#include <optional>
-
 namespace haptel::runtime {
 
 // One end in one tick, and the plane of what it touches.
@@ -22,10 +20,10 @@ struct EndFriction {
     bool sticks = false; // this iteration takes it as fixed, whatever pushes it
     bool moves = false;  // it moves under the friction of the last iteration
     glm::dvec3 at{0}, normal{0};
-    double unfelt = 0;                      // of its height over where it is pulled nothing presses
-    double bears = 1;                       // times the rest: in a groove both its walls press
-    std::optional<FrictionEllipse> ellipse; // what friction holds is no disc
-    glm::dvec3 lag{0}; // friction, in the plane: from where the end is pulled to where it comes to rest
+    double unfelt = 0;       // of its height over where it is pulled nothing presses
+    double bears = 1;        // times the rest: in a groove both its walls press
+    FrictionEllipse ellipse; // what friction holds; a disc without a grain
+    glm::dvec3 lag{0};       // friction, in the plane: from where the end is pulled to where it comes to rest
 
     bool drags() const { return touches && friction.static_coefficient > 0; }
     double coefficient() const { return slides ? friction.dynamic_coefficient : friction.static_coefficient; }
@@ -38,7 +36,6 @@ struct EndFriction {
     double follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept;
 
 private:
-    double size(const glm::dvec3& held) const noexcept { return ellipse ? ellipse->size(held) : glm::length(held); }
     double limited(double found) noexcept;
     bool oppose(const glm::dvec3& way, const glm::dmat3& give, double most) noexcept;
 

@@ -202,6 +202,7 @@ TEST_CASE("friction on an end follows Coulomb's law, however the shaft makes it 
         end_friction.friction = {0.5, 0.4};
         end_friction.touches = end_friction.slides = true;
         end_friction.normal = glm::normalize(any());
+        end_friction.take_hold(false);
         const double depth = 1e9;
         // What gives is a projection, here along one direction, two or three; a little rest stands for a short lever.
         glm::dmat3 give(0);
