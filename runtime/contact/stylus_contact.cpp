@@ -101,13 +101,8 @@ bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noex
     const glm::dvec3 along = hand_.tail - hand_.tip;
     const bool tip_is_in = !Lattice::beyond_workspace(hand_.tip), tail_is_in = !Lattice::beyond_workspace(hand_.tail);
     begin_ = 0, end_ = 1;
-    for (int k = 0; k < 3 && !(tip_is_in && tail_is_in); ++k) {
-        const double low = -drawn_in - hand_.tip[k], high = drawn_in - hand_.tip[k];
-        if (along[k] == 0 && (low > 0 || high < 0)) return false;
-        if (along[k] == 0) continue;
-        begin_ = std::max(begin_, std::min(low / along[k], high / along[k]));
-        end_ = std::min(end_, std::max(low / along[k], high / along[k]));
-    }
+    if (!(tip_is_in && tail_is_in) && !Lattice::clip_to_cube(hand_.tip, along, glm::dvec3(0), drawn_in, begin_, end_))
+        return false;
     if (tip_is_in) begin_ = 0, hand_.tip = glm::round(hand_.tip); // as the hand of a point is
     if (tail_is_in) end_ = 1, hand_.tail = glm::round(hand_.tail);
     return (end_ - begin_) * glm::length(along) > least_length; // false for what is not finite, too

@@ -41,6 +41,9 @@ struct Lattice {
     {
         return std::fabs(units.x) > workspace || std::fabs(units.y) > workspace || std::fabs(units.z) > workspace;
     }
+    // Narrows the shares between which a straight way lies in the cube that reaches so far around a place. False: none.
+    static bool clip_to_cube(const glm::dvec3& from, const glm::dvec3& along, const glm::dvec3& middle, double reach,
+                             double& enter, double& leave) noexcept;
     // Leaves of the straight way between two places in lattice units what lies in the workspace, its ends lattice
     // points. False: nothing does.
     static bool clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept;
