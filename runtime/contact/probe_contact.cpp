@@ -4,21 +4,11 @@
 #include "runtime/contact/sphere_contact.h"
 #include "runtime/surface/corner.h"
 
+#include <algorithm>
+
 namespace haptel::runtime {
 
 namespace {
-
-std::variant<std::unique_ptr<EndContact>, StylusContact, GripperContact>
-make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, double rate_hz)
-{
-    switch (probe.kind) {
-    case ProbeKind::point: break;
-    case ProbeKind::sphere: return std::make_unique<SphereContact>(surface, probe.radius_m);
-    case ProbeKind::stylus: return StylusContact(surface, rate_hz);
-    case ProbeKind::gripper: return GripperContact(surface);
-    }
-    return make_point(surface);
-}
 
 // Out of where a point touches: in a narrow pit its contact's normal, from the hand, leads into a wall.
 glm::dvec3 way_out(const Surface& surface, const Contact& contact)
@@ -37,10 +27,14 @@ glm::dvec3 way_out(const Surface& surface, const Contact& contact)
 } // namespace
 
 ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, double rate_hz)
-    : surface_(surface.get())
-    , by_planes_(probe.kind == ProbeKind::sphere || !surface->is_clean())
-    , contact_(make(probe, surface, rate_hz))
+    : surface_(surface.get()), by_planes_(probe.kind == ProbeKind::sphere || !surface->is_clean())
 {
+    switch (probe.kind) {
+    case ProbeKind::sphere: tip_ = std::make_unique<SphereContact>(surface, probe.radius_m); break;
+    case ProbeKind::stylus: stylus_ = std::make_unique<StylusContact>(surface, rate_hz); break;
+    case ProbeKind::gripper: tail_ = make_point(surface); [[fallthrough]];
+    case ProbeKind::point: tip_ = make_point(surface); break;
+    }
 }
 
 std::span<const Contact> ProbeContact::update(const ProbePose& pose, const EndsFriction& friction) noexcept
@@ -51,12 +45,13 @@ std::span<const Contact> ProbeContact::update(const ProbePose& pose, const EndsF
     const ContactCounters before = counters();
     pose_ = pose;
     if (!same) friction_ = friction;
-    if (auto* end = std::get_if<End>(&contact_))
-        (*end)->tick(pose.tip_m, friction.tip);
-    else if (auto* gripper = std::get_if<GripperContact>(&contact_))
-        gripper->update(pose.tip_m, pose.tail_m, friction);
-    else
-        std::get_if<StylusContact>(&contact_)->update(pose.tip_m, pose.tail_m, friction);
+    stylus_ ? void(stylus_->update(pose.tip_m, pose.tail_m, friction)) : tip_->tick(pose.tip_m, friction.tip);
+    if (tail_) {
+        tail_->tick(pose.tail_m, friction.tail);
+        of_fingers_count_ = 0;
+        for (const Contact& contact : tip_->contacts()) of_fingers_[of_fingers_count_++] = contact;
+        for (const Contact& contact : tail_->contacts()) (of_fingers_[of_fingers_count_++] = contact).along = 1;
+    }
     spent_ = counters() - before;
     settled_ = spent_.walks_cut == 0;
     return contacts();
@@ -65,32 +60,30 @@ std::span<const Contact> ProbeContact::update(const ProbePose& pose, const EndsF
 void ProbeContact::follow(const ProbePose& pose) noexcept
 {
     settled_ = false;
-    if (auto* end = std::get_if<End>(&contact_)) return (*end)->follow(pose.tip_m);
-    if (auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->follow(pose.tip_m, pose.tail_m);
-    std::get_if<StylusContact>(&contact_)->follow(pose.tip_m, pose.tail_m);
+    of_fingers_count_ = 0;
+    stylus_ ? stylus_->follow(pose.tip_m, pose.tail_m) : tip_->follow(pose.tip_m);
+    if (tail_) tail_->follow(pose.tail_m);
 }
 
 void ProbeContact::reset() noexcept
 {
     settled_ = false;
-    if (auto* end = std::get_if<End>(&contact_)) return (*end)->reset();
-    if (auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->reset();
-    std::get_if<StylusContact>(&contact_)->reset();
+    of_fingers_count_ = 0;
+    stylus_ ? stylus_->reset() : tip_->reset();
+    if (tail_) tail_->reset();
 }
 
 bool ProbeContact::move_out(double most_m) noexcept
 {
-    auto* end = std::get_if<End>(&contact_);
-    const bool moved = end && (*end)->move_out(most_m);
+    const bool moved = tip_ && !tail_ && tip_->move_out(most_m);
     if (moved) settled_ = false;
     return moved;
 }
 
 std::span<const Contact> ProbeContact::contacts() const noexcept
 {
-    if (const auto* end = std::get_if<End>(&contact_)) return (*end)->contacts();
-    if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->contacts();
-    return std::get_if<StylusContact>(&contact_)->contacts();
+    if (stylus_) return stylus_->contacts();
+    return tail_ ? std::span(of_fingers_.data(), of_fingers_count_) : tip_->contacts();
 }
 
 std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m) const noexcept
@@ -98,10 +91,9 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
     const std::span<const Contact> touching = contacts();
     if (touching.empty()) return {};
     ProbePose at = hand;
-    const auto* stylus = std::get_if<StylusContact>(&contact_);
-    const std::optional<Shaft> ideal = stylus ? stylus->ideal() : std::nullopt;
-    if (const auto* end = std::get_if<End>(&contact_))
-        at.tip_m = surface_->lattice.metres((*end)->proxy().at);
+    const std::optional<Shaft> ideal = stylus_ ? stylus_->ideal() : std::nullopt;
+    if (tip_ && !tail_)
+        at.tip_m = surface_->lattice.metres(tip_->proxy().at);
     else if (ideal)
         at = {surface_->lattice.metres(ideal->tip), surface_->lattice.metres(ideal->tail)};
     else
@@ -119,12 +111,10 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
 // A ball keeps the faces around it by itself.
 uint32_t ProbeContact::read_ahead(bool looks_around) noexcept
 {
-    auto* end = std::get_if<End>(&contact_);
-    auto* gripper = std::get_if<GripperContact>(&contact_);
-    auto* stylus = std::get_if<StylusContact>(&contact_);
-    if (end && looks_around) (*end)->look_around();
-    if (gripper && looks_around) gripper->look_around();
-    if (stylus && looks_around) stylus->look_around();
+    if (looks_around) {
+        stylus_ ? stylus_->look_around() : tip_->look_around();
+        if (tail_) tail_->look_around();
+    }
     if (by_planes_) return 0;
     uint32_t seen = 0;
     for (const Contact& at : contacts())
@@ -134,16 +124,15 @@ uint32_t ProbeContact::read_ahead(bool looks_around) noexcept
 
 double ProbeContact::gap_m(const ProbePose& pose) const noexcept
 {
-    if (const auto* end = std::get_if<End>(&contact_)) return (*end)->gap_m(pose.tip_m);
-    if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->gap_m(pose.tip_m, pose.tail_m);
-    return std::get_if<StylusContact>(&contact_)->gap_m(pose.tip_m, pose.tail_m);
+    if (stylus_) return stylus_->gap_m(pose.tip_m, pose.tail_m);
+    const double gap = tip_->gap_m(pose.tip_m);
+    return tail_ ? std::min(gap, tail_->gap_m(pose.tail_m)) : gap;
 }
 
 ContactCounters ProbeContact::counters() const noexcept
 {
-    if (const auto* end = std::get_if<End>(&contact_)) return (*end)->counters();
-    if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->counters();
-    return std::get_if<StylusContact>(&contact_)->counters();
+    if (stylus_) return stylus_->counters();
+    return tail_ ? tip_->counters() + tail_->counters() : tip_->counters();
 }
 
 } // namespace haptel::runtime

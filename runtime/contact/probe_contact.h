@@ -1,15 +1,18 @@
 // The contact of the scene's probe with one object, whatever the probe is. Object space, metres.
+//
+// A gripper is two points, each with a proxy of its own, held by one hand. Its tip is one finger, its tail the other;
+// between them is nothing, so that an object fits there.
 #pragma once
 
 #include "runtime/contact/end_contact.h"
-#include "runtime/contact/gripper_contact.h"
 #include "runtime/contact/stylus_contact.h"
 #include "runtime/hand/probe.h"
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
-#include <variant>
 
 namespace haptel::runtime {
 
@@ -48,13 +51,14 @@ public:
     const ContactCounters& spent() const noexcept { return spent_; } // on the last update alone
 
 private:
-    using End = std::unique_ptr<EndContact>; // of a point, or a ball
-
     std::span<const Contact> contacts() const noexcept; // of the last tick
 
     const Surface* surface_;
     bool by_planes_; // contacts know the normal of what holds them: of a ball, whatever it touches
-    std::variant<End, StylusContact, GripperContact> contact_;
+    std::unique_ptr<StylusContact> stylus_;
+    std::unique_ptr<EndContact> tip_, tail_; // of a stylus none; the tail of a gripper alone
+    std::array<Contact, 6> of_fingers_;      // of a gripper's each three
+    std::size_t of_fingers_count_ = 0;
     ProbePose pose_; // of the last tick
     EndsFriction friction_;
     ContactCounters spent_;
