@@ -103,8 +103,6 @@ void WalkContact::describe() noexcept
     contact_.sliding = contact_.touching && proxy_.sliding;
     contact_.proxy_m = lattice.metres(proxy_.at);
     contact_.hand_m = lattice.metres(hand_);
-    contact_.depth_m = 0;
-    contact_.lag_m = glm::dvec3(0);
     if (!contact_.touching) return;
 
     contact_.face = proxy_.face;
