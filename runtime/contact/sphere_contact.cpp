@@ -284,10 +284,7 @@ bool SphereContact::move(const Friction& friction) noexcept
     if (in_air && held.count == 0 && glm::distance(proxy_.at, hand_) <= distance_rounding) proxy_.at = hand_;
     counters_.walk_steps += round;
     counters_.walks_cut += cut;
-    if (grown_ < radius_) {
-        grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_) - distance_rounding);
-        close_ = {}; // that was of a smaller one
-    }
+    grow();
     if (cut && (on_the_way || in_air_)) {
         keep_told();
         return false;

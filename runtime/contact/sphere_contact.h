@@ -13,6 +13,7 @@
 #include "runtime/contact/near_faces.h"
 #include "runtime/geometry/nearest_point.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -129,6 +130,12 @@ private:
     };
 
     void aim(const glm::dvec3& hand) noexcept;
+    void grow() noexcept // as wide as there is room for; what was picked was for less
+    {
+        if (grown_ == radius_) return;
+        grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_ + distance_rounding) - distance_rounding);
+        close_ = {};
+    }
     void place(const glm::dvec3& at) noexcept;
     bool find_around(double margin, std::size_t far_most = far_faces) noexcept;
     double look_as_far_as(double way, double goes, bool flies = false) noexcept;

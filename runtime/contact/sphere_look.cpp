@@ -93,10 +93,7 @@ double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t 
     proxy_.at = at;
     const double room = look_as_far_as(reach, reach);
     if (room < 0) return 0;
-    if (grown_ < radius_) {
-        grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
-        close_ = {}; // that was of a smaller one
-    }
+    grow();
     double within = std::min(reach, room);
     if (faces_.rows().empty() && close_.room(at) >= within) return within;
     if (close_.centre == at && close_.margin >= within && laid_ == Laid::here && faces_.rows().size() <= most) {

@@ -59,7 +59,7 @@ bool SphereContact::move_out(double most_m) noexcept
         if (!free) continue;
         proxy_.at = out;
         looked = false;
-        grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_ + distance_rounding) - distance_rounding);
+        grow();
     }
     forget();
     return grown_ > before;
