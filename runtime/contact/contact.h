@@ -10,8 +10,8 @@
 
 namespace haptel::runtime {
 
-// Of what dynamic friction holds: below this share what slid sticks again.
-inline constexpr double sticks_again = 0.5;
+// Of what dynamic friction holds: below this share what slid sticks again. Of what friction may hold: less is none.
+inline constexpr double sticks_again = 0.5, friction_settled = 1e-6;
 
 // Contacts that push more than so many times what presses push against each other, as the walls of a groove narrower
 // than some 30 degrees do in sum, and of a shaft's each one where rounding makes the angle between them: beyond it they

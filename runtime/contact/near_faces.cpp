@@ -151,7 +151,7 @@ bool NearFaces::add_behind(uint32_t node) noexcept
 // Has what is behind a group take its place.
 bool NearFaces::look_into(std::size_t place) noexcept
 {
-    if (boxes_ > boxes_most || !add_behind(faces_[place] & ~group)) return false;
+    if (boxes_ > 2 * per_tick || !add_behind(faces_[place] & ~group)) return false;
     planes_[place] = nothing;
     return true;
 }

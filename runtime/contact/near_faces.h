@@ -33,8 +33,9 @@ public:
 
     // Room for so many.
     static constexpr std::size_t faces_most = 1 << 14;
-    // From one question for boxes() to the next no more groups are looked into.
-    static constexpr std::size_t boxes_most = 1 << 11;
+    // Looked at in one tick before the rest of the way is left to the next: it bounds the time of a tick. From one
+    // question for boxes() to the next no more groups are looked into than twice as many.
+    static constexpr std::size_t per_tick = 1 << 10;
 
     // Finds all that come within `radius` of the centre; false: their boxes are more than `most`, and none is kept.
     bool find(const glm::dvec3& centre, double radius, std::size_t most = faces_most) noexcept;
@@ -42,7 +43,7 @@ public:
     bool find_groups(const glm::dvec3& centre, double ball_radius, double radius) noexcept;
     std::size_t count() const noexcept { return faces_.size(); }
     // So many groups were looked into that finding anew costs less than going through all.
-    bool is_crowded() const noexcept { return faces_.size() > found_ + 1024; }
+    bool is_crowded() const noexcept { return faces_.size() > found_ + per_tick; }
     bool is_full() const noexcept { return faces_.size() + BoxTree::width > faces_.capacity(); }
     // That the tree delivered since it was asked last.
     std::size_t boxes() noexcept { return std::exchange(boxes_, 0); }

@@ -18,7 +18,7 @@ constexpr std::size_t refused_max = 8;
 // it. Both ends of a shaft are less well known, for its rows turn with it.
 constexpr double independent(const glm::dvec3&)
 {
-    return 1e-7;
+    return nearly_parallel;
 }
 constexpr double independent(const Shaft&)
 {

@@ -53,6 +53,9 @@ inline double length(const Shaft& a)
     return std::sqrt(dot(a, a));
 }
 
+// Sine of the angle below which two directions count as one: what is found by their difference would be rounding.
+inline constexpr double nearly_parallel = 1e-7;
+
 // All places x of a point with dot(normal, x) >= offset.
 struct HalfSpace {
     glm::dvec3 normal; // unit

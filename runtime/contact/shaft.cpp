@@ -16,7 +16,7 @@ Passing passing(const Shaft& shaft, const glm::dvec3& edge0, const glm::dvec3& e
     result.shaft_length = glm::length(along);
     const glm::dvec3 across = glm::cross(along, edge);
     const double square = glm::dot(across, across), length = std::sqrt(square);
-    result.parallel = !(length > shaft_tolerance::parallel * result.shaft_length * result.edge_length);
+    result.parallel = !(length > nearly_parallel * result.shaft_length * result.edge_length);
     if (result.parallel) return result;
     result.normal = across / length;
     result.height = -glm::dot(between, result.normal);

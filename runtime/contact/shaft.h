@@ -27,7 +27,6 @@ constexpr double rest_gap = Lattice::point_radius;
 constexpr double reach = 16;
 constexpr double let_go = 2 * rest_gap; // beyond this an edge holds no more, nor
 constexpr double let_go_by_end = 1024;  // what is this far beyond the shaft's
-constexpr double parallel = 1e-7;       // sine of the angle below which a shaft and an edge have no normal
 } // namespace shaft_tolerance
 
 // The lines of a shaft and an edge, where they are nearest.

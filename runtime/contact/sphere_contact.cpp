@@ -13,9 +13,6 @@ namespace haptel::runtime {
 
 namespace {
 
-// Looked at in one tick before the rest of the way is left to the next: it bounds the time of a tick.
-constexpr uint64_t faces_per_tick = 1 << 10;
-
 // Planes are picked anew where they are so many times as far as needed.
 constexpr double stride_most = 8;
 
@@ -197,7 +194,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         if (want == 0) break;
         cut = round == rounds_max;
         if (cut) break;
-        if (round > 0 && counters_.triangles_tested - seen > faces_per_tick) {
+        if (round > 0 && counters_.triangles_tested - seen > NearFaces::per_tick) {
             cut = on_the_way = true;
             break;
         }

@@ -11,9 +11,6 @@ namespace {
 // Of the radius and of its depth: who is off what it slid along by no more is on its way round that.
 constexpr double lifted = 1.0 / 64;
 
-// Of what friction may hold: what is left of a way counts as none.
-constexpr double settled = 1e-6;
-
 } // namespace
 
 // It goes along what it touches as the walk does, from one plane to the next: the way ends early, by the coefficient
@@ -52,7 +49,7 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last, bool is_la
             return held;
         }
         const double pressed = eased * held.pushes(),
-                     rounding = std::max(distance_rounding, settled * friction_.dynamic_coefficient * pressed);
+                     rounding = std::max(distance_rounding, friction_settled * friction_.dynamic_coefficient * pressed);
         double share = share_past(friction_, length, pressed, rounding, proxy_.sliding);
         glm::dvec3 slip = share * along;
         if (ellipse && share > 0) {

@@ -24,7 +24,7 @@ constexpr int looks_most = 4;
 
 // The plane before a ball is that of its triangle if the cosine between their normals is 1 within rounding; a point has
 // been given the triangle's own.
-constexpr double parallel = 1 - 1e-15;
+constexpr double one_direction = 1 - 1e-15;
 
 } // namespace
 
@@ -118,8 +118,8 @@ bool SphereContact::stands(const Held& held) noexcept
 {
     return std::all_of(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count), [&](const Row& row) {
         const glm::dvec3& facet = surface_->faces[row.face].normal;
-        const bool is_own =
-            is_point_ ? row.normal == facet || row.normal == -facet : std::fabs(glm::dot(row.normal, facet)) > parallel;
+        const bool is_own = is_point_ ? row.normal == facet || row.normal == -facet
+                                      : std::fabs(glm::dot(row.normal, facet)) > one_direction;
         if (!is_own) return false;
         const NearestPoint& foot = nearest_on(row.face, proxy_.at);
         return glm::dot(row.normal, proxy_.at - foot.at) <= grown_ + 4 * distance_rounding &&

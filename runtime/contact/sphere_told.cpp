@@ -40,10 +40,9 @@ const NearestPoint& SphereContact::nearest_on(uint32_t face, const glm::dvec3& c
 // The face that a ball touches which `normal` pushes there. Friction may hold it off the place where `face` does.
 uint32_t SphereContact::touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept
 {
-    constexpr double as_near = 64; // as the nearest, lattice units
     glm::dvec3 at = nearest_on(face, centre).at;
     double distance = glm::distance(at, centre);
-    if (distance > grown_ + as_near)
+    if (distance > grown_ + touching_gap)
         faces_.for_each_near(centre, distance, [&](uint32_t other) {
             const glm::dvec3& there = nearest_on(other, centre).at;
             const double away = glm::distance(there, centre);
@@ -57,8 +56,8 @@ uint32_t SphereContact::touching_face(uint32_t face, const glm::dvec3& normal, c
     // the other's top, and ends in the same edge where nobody can come to it. Of those in one plane the first.
     const auto turned = [&](uint32_t number) { return std::fabs(glm::dot(surface_->faces[number].normal, normal)); };
     if (surface_->origins.empty() && turned(face) > 1 - same_plane) return face;
-    const double same_place = std::sqrt(as_near * grown_); // by that: where a point touches, an angle of 3e-4
-    faces_.for_each_near(centre, distance + as_near, [&](uint32_t other) {
+    const double same_place = std::sqrt(touching_gap * grown_); // by that: where a point touches, an angle of 3e-4
+    faces_.for_each_near(centre, distance + touching_gap, [&](uint32_t other) {
         const double more = turned(other) - turned(face);
         if (more < -same_plane || (more <= same_plane && other > face)) return;
         const glm::dvec3& there = nearest_on(other, centre).at;

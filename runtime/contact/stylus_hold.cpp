@@ -19,11 +19,12 @@ namespace {
 // off by a unit sees its planes turned by that over its radius, and the hand is held elsewhere by as much.
 constexpr double step_settled = 4, turned_settled = step_settled / rest_gap;
 
-// Of its limit. Where both ends drag none is free to make way for an edge: they have to be right within the gap.
-constexpr double friction_settled = 1e-6, both_settled = 1e-9;
+// As friction_settled. Where both ends drag none is free to make way for an edge: they have to be right within the gap.
+constexpr double both_settled = 1e-9;
 
-// How often the directions of contacts follow the shaft that they turn.
+// How often the directions of contacts follow the shaft that they turn, unless that moves it by less (lattice units).
 constexpr int turns_max = 48;
+constexpr double turn_settled = 0.25;
 
 // A shaft that is this far behind its ends, after a jump around things or where it is jammed, is let go after a while.
 constexpr double far_behind = 0x1p20; // lattice units: a millionth of the object
@@ -116,7 +117,7 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
             const Shaft target{gives.tip ? hand_.tip + tip.lag : tip.at, gives.tail ? hand_.tail + tail.lag : tail.at};
             if (turn > 0 || !is_held) held = project(rows, target, distance_rounding, gives);
             const Shaft next{held.at.at(begin_), held.at.at(end_)};
-            const bool agreed = side_count_ == 0 || farther(next, at) < 0.25;
+            const bool agreed = side_count_ == 0 || farther(next, at) < turn_settled;
             at = next;
             if (friction_follows(rows, held, gives, agreed)) break;
         }
@@ -179,7 +180,7 @@ Shaft StylusContact::on_the_way(const Shaft& to, double share, const FrictionOfE
     for (int turn = 0; turn < turns_max; ++turn) {
         const Shaft held = project(turn_sides(at, rest_gap), hand, distance_rounding, gives).at;
         const Shaft next{held.at(begin_), held.at(end_)};
-        const bool agreed = farther(next, at) < 0.25;
+        const bool agreed = farther(next, at) < turn_settled;
         at = next;
         if (agreed) break;
     }
@@ -297,7 +298,7 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
         if (turn > 0) rows = turn_sides(at, 0);
         held = project(rows, target, push_settled);
         const Shaft next{held.at.at(begin_), held.at.at(end_)};
-        const bool agreed = !settled || side_count_ == 0 || farther(next, at) < 0.25;
+        const bool agreed = !settled || side_count_ == 0 || farther(next, at) < turn_settled;
         const bool is_near = farther(next, shaft_) < unfelt_most; // from farther off edges may lie beyond its ends
         if (agreed || (!is_near && at == shaft_)) break;
         at = is_near ? next : shaft_;

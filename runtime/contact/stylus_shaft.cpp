@@ -23,9 +23,6 @@ constexpr double beyond = 0.25 * rest_gap, past_the_end = 0.05;
 // Of what is known around its ends a shaft that rests on edges goes so far at once: it is raised there.
 constexpr double on_reach = 0.9;
 
-// A sweep past so many triangles counts as another one.
-constexpr uint64_t per_sweep = 256;
-
 } // namespace
 
 const glm::dvec3& StylusContact::edge_end(uint32_t face, uint32_t edge, uint32_t which) const noexcept
@@ -214,7 +211,8 @@ bool StylusContact::find_near(const SweptRegion& swept) noexcept
     });
     ++counters_.sweeps;
     counters_.triangles_tested += near_count_;
-    sweeps_left_ -= static_cast<uint32_t>(std::min<std::size_t>(1 + near_count_ / per_sweep, sweeps_left_));
+    // Past a quarter of what it may look at it counts as another one.
+    sweeps_left_ -= static_cast<uint32_t>(std::min(1 + 4 * near_count_ / near_.size(), std::size_t{sweeps_left_}));
     return all;
 }
 
