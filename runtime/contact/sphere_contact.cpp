@@ -29,9 +29,8 @@ SphereContact::SphereContact(std::shared_ptr<const Surface> surface, std::option
     , grown_(radius_)
     , is_point_(!radius_m)
     , faces_(*surface_)
-    , margin_at_first_(is_point_ ? Lattice::extent : 0)
-    , margin_(margin_at_first_)
 {
+    forget();
 }
 
 void SphereContact::reset() noexcept

@@ -65,8 +65,8 @@ public:
     bool go(const glm::dvec3& hand, const Friction& friction) noexcept;
     void come_back(const glm::dvec3& at) noexcept;                             // from there to where it was
     void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept; // a tick begins
-    // What is known of what is around.
-    void forget() noexcept { around_ = close_ = {}, margin_ = margin_at_first_; }
+    // What is known of what is around. A point, which meets few faces, looks as far as it goes at first.
+    void forget() noexcept { around_ = close_ = {}, margin_ = is_point_ ? Lattice::extent : 0.0; }
     // Goes to a place and lays the planes that hold the end while it stays within the length that is returned, at most
     // `reach`, of there. 0: there is too much around to be looked at, or more than `most` planes. `is_first`: of a
     // tick, and what it holds at first is looked at again.
@@ -167,7 +167,6 @@ private:
     NearFaces faces_;
     Laid laid_ = Laid::before;     // those picked last
     Neighbourhood around_, close_; // of all found, of those picked
-    double margin_at_first_;       // of a point, which meets few: as far as it goes
     double margin_;                // that suits the density of the mesh here
     Friction friction_;            // of this tick
     bool in_air_ = true;           // by now

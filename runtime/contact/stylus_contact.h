@@ -60,7 +60,6 @@ public:
     // (Contact::unsettled). Each depth_m is the contact's force over the stiffness. The sum of depth_m * normal, plus
     // lag_m of the ends, is (P - p) + (Q - q).
     std::span<const Contact> contacts() const noexcept { return {contacts_.data(), contact_count_}; }
-    const Contact& contact() const noexcept { return tip_->contact(); } // the tip's
 
     // The proxy of the whole stylus, in lattice units; both ends are lattice points, and it crosses no triangle.
     // Nothing while the tip alone is held. Of a stylus that reaches beyond the workspace only the part within.
