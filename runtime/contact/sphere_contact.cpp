@@ -168,7 +168,9 @@ SphereContact::Held SphereContact::as_rows(const Projection<glm::dvec3>& found) 
         for (Row& row : held.row) row.push = 0;
         for (std::size_t i = 0; i < felt.count; ++i) held.row[felt.active[i]].push = felt.push[i];
     }
-    std::ranges::sort(std::span(held.row).first(held.count), std::greater(), &Row::push);
+    if (held.count > 1)
+        std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
+                  [](const Row& a, const Row& b) { return a.push > b.push; });
     return held;
 }
 
@@ -210,7 +212,9 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         const double reach = in_air ? open : std::min(open, stride);
         double close = round == 0 || in_air || is_point_ ? -1 : close_.room(proxy_.at);
         if (close < reach || close_.margin > stride_most * stride) {
-            pick(reach, lays(in_air, round == 0));
+            // A ball that grows is wider than the planes that it had.
+            const bool again = !in_air && (is_point_ ? round == 0 : grown_ == radius_);
+            pick(reach, !again ? Laid::here : is_point_ ? Laid::ahead : Laid::before);
             close = reach;
         }
         const double step_max = std::min(open, close);

@@ -145,7 +145,6 @@ private:
     Held as_rows(const Projection<glm::dvec3>& found) noexcept;
     Held rub(double step_max, Stride& last, bool is_last) noexcept;
     void pick(double reach, Laid laid) noexcept;
-    Laid lays(bool in_air, bool is_first) const noexcept;
     bool rubs() const noexcept { return friction_.static_coefficient > 0; }
     Way travel(bool until_it_touches) noexcept;
     bool move(const Friction& friction) noexcept;

@@ -80,14 +80,6 @@ void SphereContact::pick(double reach, Laid laid) noexcept
     if (faces_.rows().empty()) close_.margin = std::min(around_.room(proxy_.at), faces_.gap());
 }
 
-// A ball that grows is wider than the planes that it had.
-SphereContact::Laid SphereContact::lays(bool in_air, bool is_first) const noexcept
-{
-    if (in_air || (!is_point_ && grown_ < radius_)) return Laid::here;
-    if (!is_point_) return Laid::before;
-    return is_first ? Laid::ahead : Laid::here;
-}
-
 double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept
 {
     proxy_.at = at;

@@ -132,7 +132,6 @@ private:
     Shaft on_the_way(const Shaft& to, double share, const FrictionOfEnds& ends) noexcept;
     void hold(const FrictionOfEnds& ends, bool settled) noexcept;
     bool move(const Shaft& to) noexcept;
-    void cross(uint32_t face, const Shaft& at, std::optional<Crossing>& first) const noexcept;
     SweptRegion swept_to(const Shaft& to) const noexcept;
     bool find_near(const SweptRegion& swept) noexcept;
     bool blocked(const Shaft& to, const SweptRegion& swept, Obstacle& obstacle) noexcept;
@@ -143,7 +142,6 @@ private:
     void see(uint32_t face, uint32_t edge, const Shaft& to) noexcept;
     void let_go_of_ended() noexcept;
     bool meets_fresh(const Side& side) const noexcept;
-    void let_go_of_unreached() noexcept;
     double away(const Shaft& part) const noexcept;
     void drop(uint32_t side) noexcept;
     void report() noexcept;

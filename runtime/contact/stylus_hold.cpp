@@ -258,7 +258,10 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
     if (stuck_ticks_ == patience_ticks_) tracked_ = false;
     reached_ = hand_;
-    let_go_of_unreached();
+    // Edges that it was stopped by on its way, and has not come to pass over: it found another way. Nothing pushes
+    // there.
+    for (uint32_t i = side_count_; i-- > 0;)
+        if (!sides_[i].reached) drop(i);
     tip_->set_sliding(ends.tip.slides);
     tail_->set_sliding(ends.tail.slides);
     hold(ends, settled);

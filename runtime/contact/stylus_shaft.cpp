@@ -184,15 +184,6 @@ bool StylusContact::is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Sh
     return false;
 }
 
-// Takes the triangle if the shaft crosses it, and none that it takes before.
-void StylusContact::cross(uint32_t face, const Shaft& at, std::optional<Crossing>& first) const noexcept
-{
-    const auto [a, b, c] = surface().corners(face);
-    Crossing crossing;
-    crossing.face = face;
-    if (crosses(at.tip, at.tail, a, b, c, crossing) && (!first || earlier(crossing, *first))) first = crossing;
-}
-
 SweptRegion StylusContact::swept_to(const Shaft& to) const noexcept
 {
     return {shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach};
@@ -234,7 +225,11 @@ bool StylusContact::blocked(const Shaft& to, const SweptRegion& swept, Obstacle&
         const uint32_t f = near_[i];
         const Face& face = s.faces[f];
         if (!swept.meets(s, f)) continue;
-        if (!met) cross(f, to, crossing);
+        Crossing here;
+        here.face = f;
+        if (!met && crosses(to.tip, to.tail, s.vertex(f, 0), s.vertex(f, 1), s.vertex(f, 2), here) &&
+            (!crossing || earlier(here, *crossing)))
+            crossing = here;
         for (uint32_t edge = 0; edge < 3; ++edge) {
             if (std::min(face.link[edge][0].face(), face.link[edge][1].face()) < f) continue; // tested from there
             const uint32_t a = face.vertex[edge], b = face.vertex[next(edge)];
@@ -293,8 +288,7 @@ void StylusContact::touch(const Obstacle& obstacle) noexcept
     const glm::dvec3 &a = edge_end(obstacle.face, obstacle.edge, 0), &b = edge_end(obstacle.face, obstacle.edge, 1);
     if (is_side(a, b)) return;
     if (side_count_ == sides_max) {
-        const auto least = std::min_element(sides_.begin(), sides_.end(),
-                                            [](const Side& x, const Side& y) { return x.push < y.push; });
+        const auto least = std::ranges::min_element(sides_, {}, &Side::push);
         drop(static_cast<uint32_t>(least - sides_.begin()));
     }
     sides_[side_count_++] = {.face = obstacle.face, .edge = obstacle.edge, .sign = double(obstacle.side)};
@@ -334,18 +328,9 @@ bool StylusContact::meets_fresh(const Side& side) const noexcept
     });
 }
 
-// Of edges that the shaft was stopped by on its way, and has not come to pass over: it found another way. Nothing is
-// there to push.
-void StylusContact::let_go_of_unreached() noexcept
-{
-    for (uint32_t i = side_count_; i-- > 0;)
-        if (!sides_[i].reached) drop(i);
-}
-
 void StylusContact::drop(uint32_t side) noexcept
 {
-    for (uint32_t i = side + 1; i < side_count_; ++i) sides_[i - 1] = sides_[i];
-    --side_count_;
+    std::shift_left(sides_.begin() + side, sides_.begin() + side_count_--, 1);
 }
 
 } // namespace haptel::runtime

@@ -77,8 +77,7 @@ void WalkContact::move_freely(const glm::dvec3& hand) noexcept
     }
     // Beyond the workspace the hand is clamped, and its way between two such places is another than the straight one.
     glm::dvec3 from = proxy_.at, to = hand;
-    const bool outside =
-        Lattice::beyond_workspace(true_hand_) || Lattice::beyond_workspace(before_);
+    const bool outside = Lattice::beyond_workspace(true_hand_) || Lattice::beyond_workspace(before_);
     if (outside) from = before_, to = true_hand_;
     Crossing crossing;
     if ((!outside || Lattice::clip_to_workspace(from, to)) &&

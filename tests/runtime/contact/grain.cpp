@@ -80,7 +80,7 @@ std::shared_ptr<const Surface> grid_of(double side_m, uint32_t cells, double mov
 
 struct Stroke {
     Stroke(const EachProbe& of, std::shared_ptr<const Surface> surface, const Friction& with, double rate_hz = 1000)
-        : probe(of), contact(of.settings, std::move(surface), true, rate_hz), friction(with)
+        : probe(of), contact(of.settings, std::move(surface), rate_hz), friction(with)
     {
         go({0, 0, 5e-3});
     }

@@ -114,7 +114,8 @@ TEST_CASE("a magnet pulls a tip that is free, whatever else holds the stylus")
     Effects effects(*scene, {});
     const auto pull_n = [&](const Contact& contact) {
         effects.begin({0.01, 0.02, 1e-3}, 0, 1);
-        (void)effects.pull(0, {}, Effects::held_out_m({&contact, 1}), 1000);
+        CollisionCount count;
+        (void)effects.pull(0, {}, Effects::held_out_m({&contact, 1}), 1000, count);
         effects.update(0, {}, {&contact, 1});
         return effects.force_n().z;
     };
