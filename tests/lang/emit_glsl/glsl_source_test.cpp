@@ -13,31 +13,24 @@ using namespace haptel::test;
 
 namespace {
 
-std::vector<const ir::Texture*> pointers_to(const std::vector<ir::Texture>& textures)
-{
-    std::vector<const ir::Texture*> all;
-    for (const ir::Texture& texture : textures) all.push_back(&texture);
-    return all;
-}
-
 // Of all textures of a program in Mesa, by each version in turns: numbers that rounding cannot lead to are failures.
 class Comparison {
 public:
     void add(const lang::Program& program)
     {
-        const std::string text = emit_glsl::source("textures", textures_of(program));
         ir::Interpreter<Ball> interpreter(program.module);
-        const std::vector<const ir::Texture*> textures = pointers_to(program.module.textures);
-        const std::vector<std::string> names = emit_glsl::texture_names(textures);
-        for (size_t index = 0; index < textures.size(); ++index) {
-            const ir::Texture& texture = *textures[index];
+        for (const emit_c::LibraryTexture& one : textures_of(program)) {
+            const ir::Texture& texture = *one.texture;
+            // Each alone: Mesa takes as long over the others in its text, which are not called.
+            const std::string text = emit_glsl::source("textures", std::span(&one, 1)),
+                              name = emit_glsl::texture_names(std::array{&texture})[0];
             CAPTURE(texture.name);
             FloatStimuli stimuli(7);
             const Square square(stimuli, 3);
             std::vector<uint32_t> words;
             const int32_t image = emit_glsl::append_image(words, stimuli.picture());
             const char* const version = versions[count++ % std::size(versions)];
-            const std::unique_ptr<Shader> shader = square.shader(version, text, names[index]);
+            const std::unique_ptr<Shader> shader = square.shader(version, text, name);
             shader->set_words("haptel_images", 16, words);
             for (const bool is_default : {true, false}) {
                 const std::vector<double> block = stimuli.block(texture, is_default);

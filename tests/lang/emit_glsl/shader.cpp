@@ -40,6 +40,7 @@ ShaderContext::ShaderContext() : state(std::make_unique<State>())
 {
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1); // which is the user's
+    setenv("GALLIVM_PERF", "nopt", 1); // each shader runs twice: what makes it fast takes longer than all of that
     state->display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     require(state->display != EGL_NO_DISPLAY && eglInitialize(state->display, nullptr, nullptr), "EGL has no display");
     require(eglBindAPI(EGL_OPENGL_ES_API), "EGL has no OpenGL ES");
