@@ -38,8 +38,12 @@ std::vector<std::size_t> pieces_of(std::size_t length, std::size_t count)
     return begins;
 }
 
+struct LineSpectrum::Fourier {
+    Eigen::FFT<double> transform{Eigen::default_fft_impl<double>(), Eigen::FFT<double>::HalfSpectrum};
+};
+
 LineSpectrum::LineSpectrum(std::size_t count, double apart, std::vector<Band> of_bands)
-    : all(std::move(of_bands)), step(apart), window(count), band_of(count / 2, -1)
+    : all(std::move(of_bands)), step(apart), window(count), band_of(count / 2, -1), fourier(std::make_unique<Fourier>())
 {
     for (std::size_t i = 0; i < count; ++i) // with a mean square of 1
         window[i] = (1 - std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count))) /
@@ -49,14 +53,15 @@ LineSpectrum::LineSpectrum(std::size_t count, double apart, std::vector<Band> of
             if (frequency(k) >= all[band].from && frequency(k) < all[band].to) band_of[k] = static_cast<int>(band);
 }
 
-std::vector<std::complex<double>> LineSpectrum::transform(std::span<const double> line) const
+LineSpectrum::~LineSpectrum() = default;
+
+std::vector<std::complex<double>> LineSpectrum::transform(std::span<const double> line)
 {
     const double mean = std::reduce(line.begin(), line.end()) / static_cast<double>(line.size());
     std::vector<double> values(line.size());
     for (std::size_t i = 0; i < line.size(); ++i) values[i] = window[i] * (line[i] - mean);
     std::vector<std::complex<double>> transformed;
-    Eigen::FFT<double> fourier;
-    fourier.fwd(transformed, values);
+    fourier->transform.fwd(transformed, values);
     return transformed;
 }
 

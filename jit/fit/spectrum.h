@@ -4,6 +4,7 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,7 @@ std::vector<std::size_t> pieces_of(std::size_t length, std::size_t count);
 class LineSpectrum {
 public:
     LineSpectrum(std::size_t count, double step, std::vector<Band> of_bands);
+    ~LineSpectrum();
     const std::vector<Band>& bands() const { return all; }
 
     // The mean square of what the line has in each band, in the square of its unit; keeps the line for moves().
@@ -44,12 +46,14 @@ private:
     std::vector<double> window;
     std::vector<int> band_of; // by frequency of the transform; -1: of none
     std::vector<std::complex<double>> line_transform;
+    struct Fourier;
+    const std::unique_ptr<Fourier> fourier; // keeps the roots of unity of its length: most of a transform's time
 
     double frequency(std::size_t k) const
     {
         return static_cast<double>(k) / (step * static_cast<double>(window.size()));
     }
-    std::vector<std::complex<double>> transform(std::span<const double> line) const;
+    std::vector<std::complex<double>> transform(std::span<const double> line); // frequencies up to the highest
 };
 
 } // namespace haptel::jit
