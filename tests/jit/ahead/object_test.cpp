@@ -1,6 +1,7 @@
 // Code for other processors: the object file is read by what its format says, not by LLVM.
 #include "jit/ahead/ahead.h"
 #include "tests/jit/codegen/samples.h"
+#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <cstring>
@@ -69,6 +70,8 @@ TEST_CASE("an object for any processor and precision shows a texture's table and
         {"baseline"}, {"avx2"}, {"avx512"}, {"aarch64"}, {"avx2", "avx512"}};
     for (const std::vector<std::string>& isas : lists)
         for (const auto precision : {jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32}) {
+            // Several are the code of each, and a way to choose; and sanitized LLVM's allocations take long.
+            if ((isas.size() > 1 || test::is_sanitized) && precision != jit::Precision::mixed) continue;
             const jit::AheadResult made = jit::build_object(library, {isas, precision});
             INFO(isas.back() << ": " << made.error);
             if (test::contains(made.error, "without a code generator")) continue; // that LLVM has none
