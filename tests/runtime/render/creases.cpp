@@ -2,6 +2,7 @@
 #include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
+#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,6 +70,7 @@ TEST_CASE("no force steps where the smooth wall of a tube meets its floor")
 {
     for (const uint32_t sides : {10u, 16u, 32u, 64u})
         for (const double turn : {0.5, 0.3, 0.05, 0.0}) { // of a side
+            if (haptel::test::is_sanitized && sides != 16) continue;
             const double angle = 2 * std::numbers::pi * (1 + turn) / sides;
             CAPTURE(sides, turn);
             Renderer renderer(shared(tube_scene(sides, {})));

@@ -3,6 +3,7 @@
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
+#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,6 +88,7 @@ TEST_CASE("a star of narrow pits and spikes built anew holds the probe where it 
     Mesh mesh = haptel::test::make_star(3);
     scale_to_size(mesh, size_m);
     for (const ProbeKind kind : {ProbeKind::point, ProbeKind::stylus, ProbeKind::gripper}) {
+        if (haptel::test::is_sanitized && kind != ProbeKind::stylus) continue;
         const ProbeSettings probe{kind, length_m};
         const auto scene = shared(scene_of(probe, mesh)), anew = shared(scene_of(probe, mesh));
         std::mt19937_64 random(9);

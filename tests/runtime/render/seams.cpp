@@ -1,5 +1,6 @@
 // From one object at rest to another that it meets: no step of the force that neither of them has by itself.
 #include "tests/runtime/render/stroke.h"
+#include "tests/support/tries.h"
 
 using namespace haptel;
 using namespace haptel::runtime;
@@ -29,6 +30,7 @@ TEST_CASE("no force steps where a floor and a wall of other stiffness meet, what
     for (const double degrees : {60.0, 90.0, 120.0, 150.0})
         for (const ProbeKind kind : every_probe)
             for (const bool floor_first : {true, false}) {
+                if (haptel::test::is_sanitized && degrees != 90) continue;
                 const Wedge wedge{degrees};
                 std::vector<SceneObject> objects = {wedge.floor(200), wedge.wall(1500)};
                 if (!floor_first) std::swap(objects[0], objects[1]);
@@ -57,6 +59,7 @@ TEST_CASE("no force steps where a floor and a wall of other texture or friction 
     for (const double degrees : {60.0, 90.0, 120.0})
         for (const ProbeKind kind : every_probe)
             for (const auto& [floor_n_per_m, wall_n_per_m, floor_friction, wall_friction, textured] : materials) {
+                if (haptel::test::is_sanitized && degrees != 90) continue;
                 const Wedge wedge{degrees};
                 const auto texture = [&] { return textured ? sine_texture(amplitude_m, wave_m) : TextureBinding(); };
                 Stroke stroke(with_probe(joined({wedge.floor(floor_n_per_m, floor_friction, texture()),

@@ -4,6 +4,7 @@
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
+#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,6 +96,7 @@ TEST_CASE("a slow stroke changes the force by twice the spring's change at most,
     for (const Mesh& mesh : {bumpy, torus})
         for (const Probe& probe : probes)
             for (const double friction : {0.0, 0.3}) {
+                if (haptel::test::is_sanitized && (friction == 0) == (&probe == &probes[0])) continue;
                 const std::vector<double> changes = strokes(mesh, probe, friction, 40'000);
                 const auto share = [&](double of) { return changes[static_cast<std::size_t>(of * 39'999)]; };
                 CAPTURE(mesh.triangles.size(), probe.name, friction, share(0.5), share(0.99), changes.back());

@@ -141,6 +141,7 @@ TEST_CASE("of thousands of triangles round one vertex as many are taken as a tic
 {
     CHECK(build_surface(wheel(2000)).surface);
     CHECK(build_surface(book(2000)).surface);
+    if (haptel::test::is_sanitized) return; // to come to the limit takes long then: large_soup() does below
     const SurfaceResult wheel_of_many = build_surface(wheel(16'000));
     CHECK(!wheel_of_many.surface);
     CHECK(contains(wheel_of_many.error, "to find which of its triangles cut each other takes more than"));
@@ -151,7 +152,7 @@ TEST_CASE("of thousands of triangles round one vertex as many are taken as a tic
 
 TEST_CASE("a sound mesh is taken, however long and thin its triangles are, and though all of them are at a border")
 {
-    for (const Mesh& mesh : {strip(100'000), cylinder(8000)}) {
+    for (const Mesh& mesh : {strip(haptel::test::tries(100'000u)), cylinder(haptel::test::tries(8000u))}) {
         const SurfaceResult built = build_surface(mesh);
         CAPTURE(built.error);
         REQUIRE(built.surface);
@@ -166,7 +167,7 @@ TEST_CASE("large triangles at random, in space or nearly in a plane, are refused
     CHECK(build_surface(large_soup(300, 1)).surface);
     CHECK(build_surface(large_soup(300, 0)).surface);
     for (const double height : {1.0, 1e-7, 0.0}) {
-        if (haptel::test::is_sanitized && height == 1e-7) continue;
+        if (haptel::test::is_sanitized && height != 1.0) continue;
         CAPTURE(height);
         const SurfaceResult built = build_surface(large_soup(20'000, height));
         CHECK(!built.surface);

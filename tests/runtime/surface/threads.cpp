@@ -68,7 +68,7 @@ TEST_CASE("what a surface is built for is told by the thread that loads alone")
     std::atomic<int> told = 0, elsewhere = 0;
     Loading loading{[&](std::string_view) { ++(std::this_thread::get_id() == loads ? told : elsewhere); }};
     loading.threads = 7;
-    REQUIRE(build_surface(make_bumpy_sphere(7), 40, &loading).surface);
+    REQUIRE(build_surface(make_bumpy_sphere(haptel::test::is_sanitized ? 6 : 7), 40, &loading).surface);
     CHECK(told >= 7);
     CHECK(elsewhere == 0);
 }
