@@ -22,16 +22,17 @@ namespace {
 
 const std::string explore = "explore " + project_path("examples/scenes/");
 
-// What a hand feels in so many seconds of a scene of which nothing is to be said.
+// What a hand feels in so many seconds of a scene of which nothing is to be said. Recorded: a folder's pictures take
+// longer than all the ticks.
 std::vector<TickRecord> felt_in(const std::string& scene, int seconds)
 {
     const Folder folder;
     const Ran ran = run_command(explore + scene + " --clock virtual --seconds " + std::to_string(seconds) +
-                                " --json --out " + folder.file("run"));
+                                " --json --record " + folder.file("run.haptrace"));
     CAPTURE(scene);
     CHECK(ran.err == "");
     REQUIRE(ran.code == 0);
-    auto trace = haptel::runtime::read_trace(folder.file("run/trace.csv"));
+    auto trace = haptel::runtime::read_trace(folder.file("run.haptrace"));
     REQUIRE(trace.records.size() == static_cast<std::size_t>(1000 * seconds));
     int touching = 0;
     for (const TickRecord& tick : trace.records) {
@@ -70,10 +71,11 @@ Range heights_m(const std::vector<TickRecord>& ticks, double from_x_m, double to
 TEST_CASE("example lever: the shaft leans on the block in a part of each circle, and the torque is then not the tip's")
 {
     const Folder folder;
-    const Ran ran = run_command(explore + "lever.toml --clock virtual --seconds 4 --out " + folder.file("run"));
+    const Ran ran =
+        run_command(explore + "lever.toml --clock virtual --seconds 4 --record " + folder.file("run.haptrace"));
     INFO(ran.err);
     REQUIRE(ran.code == 0);
-    const auto trace = haptel::runtime::read_trace(folder.file("run/trace.csv"));
+    const auto trace = haptel::runtime::read_trace(folder.file("run.haptrace"));
     REQUIRE(trace.records.size() == 4000);
     int by_tip = 0, leaning = 0;
     for (const TickRecord& tick : trace.records) {

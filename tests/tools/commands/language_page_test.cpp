@@ -92,6 +92,7 @@ TEST_CASE("language page, porting page: every example does what it says")
             std::filesystem::create_directories(std::filesystem::path(folder.file(name)).parent_path());
         }
         const std::string file = folder.write(name, fence.text);
+        if (is_sanitized && examples % 4 != 0) continue; // commands for each example take long then
         std::set<std::string> found;
         const Ran ran = run_command("check --json '" + file + "'");
         INFO(ran.err);
@@ -101,7 +102,6 @@ TEST_CASE("language page, porting page: every example does what it says")
         CHECK(found == wanted);
         const Case parsed = haptel::lang::test::read_case(fence.text);
         CHECK(parsed.malformed == "");
-        if (is_sanitized && examples % 4 != 0) continue; // a command for each value takes long then
         for (const Evaluation& evaluation : parsed.evaluations) {
             REQUIRE(!checked["textures"].empty());
             check_value(file, checked["textures"].back()["name"], evaluation);

@@ -1,5 +1,6 @@
 // haptel new --library, pack, install, list, remove: from a library's author to who uses it.
 #include "tests/libraries/package/hostile_archives.h"
+#include "tests/support/tries.h"
 #include "tests/tools/commands/library_stage.h"
 
 #include <algorithm>
@@ -137,8 +138,10 @@ TEST_CASE("hostile archives are refused, and nothing is written")
     CHECK(root.run("install sound.haptlib").code == 0);
     CHECK(root.run("remove wood").code == 0);
     const auto archives = hostile_archives();
-    size_t tried = 0;
-    for (const HostileArchive& archive : archives) {
+    CHECK(archives.size() >= 60);
+    // Sanitized some, for a command for each takes long: libraries_test reads them all.
+    for (size_t i = 0; i < archives.size(); i += is_sanitized ? 6 : 1) {
+        const HostileArchive& archive = archives[i];
         root.write("evil.haptlib", archive.bytes);
         const auto before = root.state();
         const Ran ran = root.run("install evil.haptlib");
@@ -148,9 +151,7 @@ TEST_CASE("hostile archives are refused, and nothing is written")
         CHECK(contains(ran.err, "error: "));
         CHECK(ran.out.empty());
         CHECK((root.state() == before));
-        ++tried;
     }
-    CHECK(tried >= 60);
     const std::string homeless = "cd '" + root.work.string() + "' && env -u HOME -u XDG_DATA_HOME ";
     write_library(root, "wood/1.0.0", "wood", "1.0.0", "1"); // as where libraries are installed
     for (const char* const command : {"install sound.haptlib", "remove wood"}) {
