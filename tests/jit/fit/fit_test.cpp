@@ -64,7 +64,7 @@ constexpr Case materials[] = {{"fabric/aida", "aida", 15},
 
 void find_hidden(const std::string& folder, std::span<const Case> cases, uint64_t seed)
 {
-    for (std::size_t i = 0; i < cases.size(); i += test::is_sanitized ? 5 : 1) {
+    for (std::size_t i = 0; i < cases.size(); i += test::is_sanitized ? 10 : 1) {
         const Case& each = cases[i];
         const CompiledTextures compiled = compiled_for_fit(test::project_path(folder + each.file + ".haptel"));
         REQUIRE(compiled.program);
