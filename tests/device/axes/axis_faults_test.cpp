@@ -4,6 +4,7 @@
 #include "tests/device/evdev/fake_wheel.h"
 #include "tests/device/hid/board_ticks.h"
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -125,7 +126,7 @@ void run_with_faults(uint32_t runs)
 TEST_CASE(
     "faults of boards and wheels at random moments: no force without a pose, a pose again, and no force in the end")
 {
-    run_with_faults(20);
+    run_with_faults(haptel::test::is_sanitized ? 6 : 20); // each waits
 }
 
 TEST_CASE("faults of boards and wheels at random moments, two thousand times", "[.long]")

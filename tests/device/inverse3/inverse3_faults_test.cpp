@@ -1,6 +1,7 @@
 // Whatever becomes of the Inverse3 service: a reason in words, soon, and no force that nobody wants.
 #include "tests/device/inverse3/quick_inverse3.h"
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <limits>
@@ -240,7 +241,7 @@ void run_with_service_faults(uint32_t runs)
 
 TEST_CASE("faults of an Inverse3 service at random moments: never a force without a pose, and a pose again afterwards")
 {
-    run_with_service_faults(200);
+    run_with_service_faults(haptel::test::is_sanitized ? 50 : 200); // each waits
 }
 
 TEST_CASE("faults of an Inverse3 service at random moments, two thousand times", "[.long]")
