@@ -133,7 +133,8 @@ private:
     void grow() noexcept // as wide as there is room for; what was picked was for less
     {
         if (grown_ == radius_) return;
-        grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_ + distance_rounding) - distance_rounding);
+        const double widest = radius_ + distance_rounding, room = faces_.distance(proxy_.at, widest);
+        grown_ = room < widest ? std::max(grown_, room - distance_rounding) : radius_;
         close_ = {};
     }
     void place(const glm::dvec3& at) noexcept;

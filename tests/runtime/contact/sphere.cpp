@@ -274,13 +274,15 @@ TEST_CASE("friction holds a ball up to the static coefficient and lets it slide 
 TEST_CASE("a ball put down into something does not jump out of it, and is whole once it has left")
 {
     constexpr double r = 0.05;
-    SphereContact contact(surface_of(make_plane(3)), r);
+    const auto surface = surface_of(make_plane(3));
+    SphereContact contact(surface, r);
     CHECK(contact.update({0, 0, 0.01}).empty());
     CHECK(contact.update({0, 0, 0.01}).empty()); // no push
     const auto inside = contact.update({0.1, 0, 0.008});
     REQUIRE(inside.size() == 1);
     CHECK(std::abs(inside[0].radius_m - 0.01) < 1e-9); // as large as it has room
     CHECK(contact.update({0.1, 0, 0.3}).empty());
+    CHECK(contact.radius() == SphereContact(surface, r).radius()); // to the last bit, or it grows in each tick
     const auto touched = contact.update({0.1, 0, 0.04});
     REQUIRE(touched.size() == 1);
     CHECK(std::abs(touched[0].depth_m - 0.01) < 1e-9);

@@ -315,6 +315,17 @@ TEST_CASE("a known clearance spares queries and never hides the surface")
     CHECK(contact.counters().sweeps < 500); // of 2 000 ticks
 }
 
+TEST_CASE("a clearance is over once the point has left it, though its hand comes back at once")
+{
+    WalkContact contact(surface_of(make_plane(3))); // 1 m wide, in z = 0
+    for (int i = 0; i < 4; ++i) {
+        contact.update({0, 0, 0.4 + 1e-3 * i});
+        contact.look_around();
+    }
+    CHECK_FALSE(contact.update({1.2, 0, -0.4}).touching); // past the border, below
+    CHECK(contact.update({0.1, 0, 0.2}).touching);        // up through the plate
+}
+
 TEST_CASE("a stylus put down with its tip inside touches where it entered, and gives torque about its grip")
 {
     StylusContact stylus(surface_of(make_plane(3)));

@@ -233,14 +233,18 @@ TEST_CASE("a texture published to an object out of reach is there when the hand 
     const auto slot = scene.objects[8].texture;
     Renderer renderer(shared(std::move(scene)));
     for (int i = 0; i < 100; ++i) renderer.tick(at(0, 0, 0.02)), renderer.between_ticks();
+    std::vector<std::weak_ptr<const void>> published;
     for (int i = 0; i < 20; ++i) {
         const auto flat = [](const haptel_point&, glm::dvec3& gradient) {
             gradient = glm::dvec3(0);
             return -1e-4;
         };
-        CHECK(slot->publish(lambda_texture(flat, -1e-4, 0)).empty());
+        TextureBinding texture = lambda_texture(flat, -1e-4, 0);
+        published.push_back(texture.owner);
+        CHECK(slot->publish(std::move(texture)).empty());
         for (int tick = 0; tick < 100; ++tick) renderer.tick(at(0, 0, 0.02)), renderer.between_ticks();
     }
+    CHECK(std::ranges::count_if(published, [](const auto& owner) { return !owner.expired(); }) <= 2);
     TickResult felt;
     for (int i = 0; i <= 300; ++i)
         felt = renderer.tick(at(0.1, 0.1, 0.02 - 1e-5 * std::min(i, 150) - 1e-4 * std::max(0, i - 215)));
