@@ -16,7 +16,7 @@ subprocess.run([haptel, "explore", source / "examples/scenes/bricks.toml", "--se
                 "--out", folder], check=True, stdout=subprocess.DEVNULL)
 subprocess.run([haptel, "bench", "tick", "--quick", "--out", folder], check=True, stdout=subprocess.DEVNULL)
 # `bench accuracy` takes minutes: two rows in its columns.
-written = (source / "tools/report/bench_accuracy.cpp").read_text()
+written = (source / "tools/figures/bench_accuracy.cpp").read_text()
 columns = re.sub(r'"\s*"', "", re.search(r'"(texture,mode,.*?)\\n"', written, re.DOTALL).group(1))
 row = dict.fromkeys(columns.split(","), "0") | {"texture": "noise", "mode": "batch", "precision": "f64",
                                                 "median_ns": "9.5", "wavelengths": "10", "gradient_error_max": "1e-16"}

@@ -17,7 +17,7 @@ houses=(
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'api: . | include/haptel input/toml runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
     'api/compiler: . | include/haptel api jit lang/abi'
-    'tools: output arguments plot sound report library control commands . | input libraries lang stdlib jit runtime device bench'
+    'tools: output arguments fit plot figures replay check library control explore sound commands . | input libraries lang stdlib jit runtime device bench'
     'tests/api: . | tests/support examples/chai3d'
     'tests/lang: . | tests/support tests/conformance/case.h tests/fuzz/random_source.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
     'tests/runtime: . | tests/support input/toml runtime lang/abi'

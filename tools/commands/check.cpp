@@ -10,13 +10,13 @@
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/arguments/texture_files.h"
-#include "tools/commands/check_watch.h"
+#include "tools/check/check_report.h"
+#include "tools/check/check_watch.h"
+#include "tools/check/explain.h"
+#include "tools/check/fixes.h"
 #include "tools/commands/command.h"
-#include "tools/commands/explain.h"
-#include "tools/commands/fixes.h"
 #include "tools/output/replace_file.h"
 #include "tools/output/terminal.h"
-#include "tools/report/check_report.h"
 
 #include <algorithm>
 #include <cmath>

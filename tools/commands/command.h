@@ -5,18 +5,13 @@
 // error.
 #pragma once
 
+#include "tools/output/exit_code.h"
+
 #include <CLI/CLI.hpp>
 
 #include <functional>
 
 namespace haptel::tools {
-
-// A promise to scripts. Warnings never change it.
-enum class ExitCode : int {
-    fine = 0,
-    findings = 1, // errors in the input, a failed check
-    misuse = 2,   // the command line itself
-};
 
 struct Command {
     CLI::App* app = nullptr; // the subcommand as added to the root

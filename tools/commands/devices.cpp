@@ -4,10 +4,10 @@
 #include "runtime/geometry/finite.h"
 #include "runtime/servo/real_time.h"
 #include "tools/commands/command.h"
-#include "tools/commands/interrupt.h"
+#include "tools/explore/axes_json.h"
+#include "tools/output/interrupt.h"
 #include "tools/output/json.h"
 #include "tools/output/terminal.h"
-#include "tools/report/axes_json.h"
 
 #include <algorithm>
 #include <array>

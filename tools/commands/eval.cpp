@@ -3,12 +3,12 @@
 #include "lang/abi/contact_limits.h"
 #include "lang/abi/evaluate.h"
 #include "lang/abi/outputs.h"
+#include "tools/arguments/eval_table.h"
 #include "tools/arguments/precisions.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/commands/command.h"
 #include "tools/output/json.h"
 #include "tools/output/terminal.h"
-#include "tools/report/eval_table.h"
 
 #include <algorithm>
 #include <fmt/format.h>

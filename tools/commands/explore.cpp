@@ -6,14 +6,14 @@
 #include "runtime/servo/allocation_count.h"
 #include "tools/arguments/quantity.h"
 #include "tools/commands/command.h"
-#include "tools/commands/explore_control.h"
-#include "tools/commands/explore_hands.h"
-#include "tools/commands/explore_scene.h"
-#include "tools/commands/explore_textures.h"
-#include "tools/commands/interrupt.h"
-#include "tools/commands/traced_files.h"
+#include "tools/explore/explore_control.h"
+#include "tools/explore/explore_hands.h"
+#include "tools/explore/explore_scene.h"
+#include "tools/explore/explore_status.h"
+#include "tools/explore/explore_textures.h"
+#include "tools/output/interrupt.h"
 #include "tools/output/terminal.h"
-#include "tools/report/explore_status.h"
+#include "tools/replay/traced_files.h"
 
 #include <algorithm>
 #include <charconv>

@@ -3,11 +3,11 @@
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/commands/command.h"
+#include "tools/fit/fit_report.h"
+#include "tools/fit/measured_file.h"
 #include "tools/output/json.h"
 #include "tools/output/replace_file.h"
 #include "tools/output/terminal.h"
-#include "tools/report/fit_report.h"
-#include "tools/report/measured_file.h"
 
 #include <filesystem>
 #include <fmt/format.h>

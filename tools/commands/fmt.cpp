@@ -5,8 +5,8 @@
 #include "lang/syntax/parser.h"
 #include "libraries/manifest.h"
 #include "libraries/places.h"
+#include "tools/check/fixes.h"
 #include "tools/commands/command.h"
-#include "tools/commands/fixes.h"
 #include "tools/output/replace_file.h"
 #include "tools/output/terminal.h"
 

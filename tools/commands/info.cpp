@@ -4,11 +4,11 @@
 #include "lang/abi/library_name.h"
 #include "lang/syntax/parser.h"
 #include "lang/text/near_name.h"
+#include "tools/check/check_report.h"
 #include "tools/commands/command.h"
-#include "tools/commands/info_library.h"
-#include "tools/commands/reference.h"
+#include "tools/library/info_library.h"
+#include "tools/library/reference.h"
 #include "tools/output/terminal.h"
-#include "tools/report/check_report.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "tools/commands/command.h"
 #include "tools/output/terminal.h"
 #include "tools/plot/plot_texture.h"
-#include "tools/report/texture_picture.h"
+#include "tools/plot/texture_picture.h"
 
 #include <fmt/format.h>
 #include <memory>

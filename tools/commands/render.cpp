@@ -2,9 +2,9 @@
 #include "runtime/files/quantity.h"
 #include "tools/arguments/quantity.h"
 #include "tools/commands/command.h"
-#include "tools/commands/render_play.h"
 #include "tools/output/replace_file.h"
 #include "tools/output/terminal.h"
+#include "tools/sound/render_play.h"
 
 #include <array>
 #include <cmath>

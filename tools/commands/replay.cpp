@@ -3,10 +3,10 @@
 #include "runtime/servo/recording.h"
 #include "runtime/servo/trace_csv.h"
 #include "tools/commands/command.h"
-#include "tools/commands/replay_run.h"
-#include "tools/commands/traced_files.h"
 #include "tools/output/terminal.h"
-#include "tools/report/felt_difference.h"
+#include "tools/replay/felt_difference.h"
+#include "tools/replay/replay_run.h"
+#include "tools/replay/traced_files.h"
 
 #include <filesystem>
 #include <fmt/format.h>

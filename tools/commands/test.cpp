@@ -3,12 +3,12 @@
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/arguments/texture_files.h"
+#include "tools/check/suggested_facts.h"
+#include "tools/check/test_report.h"
 #include "tools/commands/command.h"
-#include "tools/commands/feel_test.h"
 #include "tools/library/library_test.h"
 #include "tools/output/terminal.h"
-#include "tools/report/suggested_facts.h"
-#include "tools/report/test_report.h"
+#include "tools/replay/feel_test.h"
 
 #include <algorithm>
 #include <chrono>

@@ -3,10 +3,10 @@
 #include "jit/texture/texture.h"
 #include "lang/text/near_name.h"
 #include "libraries/places.h"
+#include "tools/check/test_report.h"
 #include "tools/library/library_test.h"
 #include "tools/output/terminal.h"
-#include "tools/report/test_report.h"
-#include "tools/report/texture_picture.h"
+#include "tools/plot/texture_picture.h"
 
 #include <algorithm>
 #include <fmt/format.h>

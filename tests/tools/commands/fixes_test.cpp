@@ -2,7 +2,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/project_path.h"
 #include "tests/tools/commands/run_command.h"
-#include "tools/commands/fixes.h"
+#include "tools/check/fixes.h"
 #include "tools/output/replace_file.h"
 
 #include <sys/stat.h>

@@ -9,7 +9,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
 #include "tests/support/touch_scenes.h"
-#include "tools/commands/explore_textures.h"
+#include "tools/explore/explore_textures.h"
 
 #include <algorithm>
 #include <chrono>
