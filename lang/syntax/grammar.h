@@ -174,7 +174,7 @@ private:
         return word == any_size && !one_size.empty() ? one_size : word;
     }
 
-    // Small rules that all share, parse_declaration.cpp and parse_facts.cpp
+    // Small rules that all share, parse_type.cpp and parse_facts.cpp
     ast::TypeName type_name();
     void array_suffix(ast::TypeName& type);
     ast::Name name(std::string_view what);     // empty, and reported, where there is none
