@@ -52,9 +52,7 @@ void propose(Diagnostic& reported, Span span, const ForeignWord& word);
 // Without being asked: what converts_implicitly(), and a whole number where a uint is wanted, which it is then.
 bool converts(const ast::Expression& e, Type wanted);
 void adopt_literal(ast::Expression& e, Type wanted);
-Type operand_type(Type other);         // what a literal beside it is
-std::string zero_of(Type type);        // as it is written: "vec2(0.0)"
-std::string constructor_of(Type type); // of a struct: "Cell(id, d)"
+Type operand_type(Type other); // what a literal beside it is
 // The argument of a call at `where` that is not given.
 ast::ExpressionPtr left_out(Span where, const ParameterInfo& parameter);
 

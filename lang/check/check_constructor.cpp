@@ -1,5 +1,6 @@
 // Values that a type's name makes of others.
 #include "lang/check/body_checker.h"
+#include "lang/check/type_hint.h"
 
 namespace haptel::lang {
 

@@ -1,6 +1,7 @@
 // What a call does besides having a value: it writes arguments, leaves some out, and says between what the callee's
 // whole numbers lie.
 #include "lang/check/body_checker.h"
+#include "lang/check/type_hint.h"
 
 #include <algorithm>
 

@@ -1,5 +1,6 @@
 // Statements: declarations, assignments, branches, and whether every path returns.
 #include "lang/check/body_checker.h"
+#include "lang/check/type_hint.h"
 #include "lang/syntax/operators.h"
 #include "lang/text/limits.h"
 

@@ -82,13 +82,6 @@ const FileScope& scope_of(const CheckContext& context, uint32_t file)
     return (*context.scopes)[context.is_library ? file - SourceSet::library_files : file];
 }
 
-std::string constructor_of(Type type)
-{
-    std::string names;
-    for (const StructMember& member : type.structure->members) names += (names.empty() ? "" : ", ") + member.name;
-    return to_string(type) + "(" + names + ")";
-}
-
 // Of a name, or of members of one; Type::error() for other expressions, and where it is not known.
 Type BodyChecker::type_before_reading(const Expression& e) const
 {

@@ -1,6 +1,7 @@
 // Textures: their parameters, which are the numbers that applications and sliders set, and the material outputs.
 #include "lang/abi/outputs.h"
 #include "lang/check/body_checker.h"
+#include "lang/check/type_hint.h"
 #include "lang/text/number.h"
 
 #include <algorithm>
