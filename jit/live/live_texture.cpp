@@ -1,6 +1,6 @@
 #include "jit/live/live_texture.h"
 
-#include "jit/live/file_watch.h"
+#include "jit/live/compile_thread.h"
 #include "jit/picture/image_file.h"
 #include "jit/texture/source_file.h"
 #include "lang/parameter_value.h"
@@ -10,11 +10,6 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <poll.h>
-#include <set>
-#include <sys/eventfd.h>
-#include <thread>
-#include <unistd.h>
 #include <vector>
 
 namespace haptel::jit {
@@ -22,10 +17,8 @@ namespace haptel::jit {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
+using Clock = CompileThread::Clock;
 
-// Looks at the files unasked: for what inotify does not tell, and for folders that were not there.
-constexpr auto unasked = 1s;
 // A value is felt at once, and by a range of heights that takes longer to find when none has come for so long: each
 // would be late that came meanwhile, or while that range fades in. A wheel that is turned clicks more often.
 constexpr auto rest = 500ms;
@@ -43,117 +36,6 @@ bool is_same_range(const TextureBinding& one, const TextureBinding& other)
     return one.facts.height_min_m == other.facts.height_min_m && one.facts.height_max_m == other.facts.height_max_m &&
            std::ranges::equal(one.shoulder_m, other.shoulder_m);
 }
-
-// The one thread that compiles for live textures: waits for files to change and tells its clients.
-class CompileThread {
-public:
-    struct Round {
-        bool of_files = true;      // some may have changed; else values alone have come
-        bool is_writing = false;   // somebody is at a file, which is looked at when that is over
-        bool may_take_long = true; // one update a round: a value waits for no more
-    };
-    struct Place {
-        std::mutex at_work; // held during an update
-        // Looks at what may have changed, and acts; what takes long and nobody waits for, it does only if it may, and
-        // then says that no other may. Throws nothing. Null: no more.
-        std::function<void(Round&)> update;
-        std::set<std::string> watched;        // files, as of the last update
-        std::optional<Clock::time_point> due; // of the next update, at the latest
-    };
-
-    // The one of this process; it ends with its last owner.
-    static std::shared_ptr<CompileThread> shared()
-    {
-        static std::mutex mutex;
-        static std::weak_ptr<CompileThread> current;
-        const std::lock_guard lock(mutex);
-        std::shared_ptr<CompileThread> thread = current.lock();
-        if (!thread) current = thread = std::make_shared<CompileThread>();
-        return thread;
-    }
-
-    CompileThread() : thread([this](const std::stop_token& stop) { run(stop); }) {}
-    ~CompileThread()
-    {
-        thread.request_stop();
-        wake();
-        thread.join();
-        close(wake_event);
-    }
-
-    // Any thread, from within an update too. It keeps the place for as long as somebody else does.
-    void add(const std::shared_ptr<Place>& place)
-    {
-        {
-            const std::lock_guard lock(places_mutex);
-            places.push_back(place);
-        }
-        wake();
-    }
-    // Update soon, without a change of a file.
-    void wake()
-    {
-        const uint64_t one = 1;
-        [[maybe_unused]] const ssize_t written = write(wake_event, &one, sizeof one);
-    }
-
-private:
-    void run(const std::stop_token& stop)
-    {
-        Settling settling;
-        Clock::time_point files_due = Clock::now();
-        while (!stop.stop_requested()) {
-            const bool is_woken = wait(std::min(files_due, clients_due));
-            const FileWatch::Change change = watch.take();
-            const auto now = Clock::now();
-            if (change != FileWatch::Change::none) files_due = settling.due_after(change, now);
-            const bool of_files = now >= files_due;
-            if (!of_files && !is_woken && now < clients_due) continue;
-            update_clients({.of_files = of_files, .is_writing = !of_files && settling.is_awaited()});
-            if (!of_files) continue;
-            settling.read();
-            files_due = Clock::now() + unasked;
-        }
-    }
-
-    // True: woken by wake().
-    bool wait(Clock::time_point until)
-    {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
-        pollfd descriptors[] = {{wake_event, POLLIN, 0}, {watch.descriptor(), POLLIN, 0}};
-        poll(descriptors, 2, static_cast<int>(std::max<int64_t>(left.count(), 0)));
-        uint64_t count = 0;
-        return read(wake_event, &count, sizeof count) == sizeof count;
-    }
-
-    // Of those that there are at the start: who is added meanwhile wakes the thread anew.
-    void update_clients(Round round)
-    try {
-        clients_due = Clock::time_point::max();
-        std::unique_lock lock(places_mutex);
-        std::erase_if(places, [](const auto& place) { return place.use_count() == 1; });
-        const std::vector<std::shared_ptr<Place>> all = places;
-        lock.unlock();
-        std::set<std::string> files;
-        for (const auto& place : all) {
-            const std::lock_guard at_work(place->at_work);
-            if (!place->update) continue;
-            place->update(round);
-            files.insert(place->watched.begin(), place->watched.end());
-            if (!round.is_writing) clients_due = std::min(clients_due, place->due.value_or(clients_due));
-        }
-        watch.watch(files);
-    } catch (...) {
-        // No memory for the list of files: the watch is as it was, and this is tried again in a moment.
-    }
-
-    FileWatch watch;
-    Clock::time_point clients_due = Clock::time_point::max(); // of the next of their updates, at the latest
-    const int wake_event = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-    std::mutex places_mutex; // never held while a client is at work: it may add others
-    std::vector<std::shared_ptr<Place>> places;
-    std::jthread thread;
-};
 
 } // namespace
 
