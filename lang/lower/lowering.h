@@ -1,6 +1,6 @@
 // The two classes that lowering is made of: ModuleLowering makes functions and tables once each, BodyLowering turns one
-// body into instructions. Parts of the latter: lower_expression.cpp, lower_call.cpp, lower_builtin.cpp,
-// lower_statement.cpp.
+// body into instructions. Parts of the former: lower.cpp, lower_function.cpp; of the latter: lower_expression.cpp,
+// lower_call.cpp, lower_builtin.cpp, lower_statement.cpp.
 #pragma once
 
 #include "lang/ir/builder.h"
@@ -205,5 +205,8 @@ Values lower_builtin(ModuleLowering& owner, ir::Builder& builder, const BuiltinO
 
 ir::Type ir_type(Type type);               // of its components, which are of one type in all but structs
 std::vector<ir::Type> ir_types(Type type); // of each of its components
+
+// The parameters that are values, as the IR takes them: `by` first, images last.
+std::vector<size_t> in_order(const std::vector<ParameterInfo>& parameters, size_t by);
 
 } // namespace haptel::lang
