@@ -1,6 +1,6 @@
 // The two classes that lowering is made of: ModuleLowering makes functions and tables once each, BodyLowering turns one
 // body into instructions. Parts of the former: lower.cpp, lower_function.cpp; of the latter: lower_expression.cpp,
-// lower_call.cpp, lower_builtin.cpp, lower_statement.cpp.
+// lower_operator.cpp, lower_call.cpp, lower_builtin.cpp, lower_statement.cpp.
 #pragma once
 
 #include "lang/ir/builder.h"
