@@ -13,10 +13,10 @@ namespace haptel::runtime {
 
 // Of all contacts of a probe, those on creases by their rows. The rows of one add up to what it was: their depths times
 // their normals, and their lags. On a border, in a narrow groove, or at a vertex of more than `facets_most` facets, it
-// stays one contact, as Contact::on_crease. At most 16 contacts; valid until the next call.
+// stays one contact, as Contact::on_crease. At most 12 contacts, a stylus's; valid until the next call.
 class CreaseRows {
 public:
-    static constexpr std::size_t rows_most = 24; // of 16 contacts, four of them on creases
+    static constexpr std::size_t rows_most = 24; // of its ends' six contacts three each, and its other six
 
     std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts) noexcept;
 
